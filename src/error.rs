@@ -1,0 +1,183 @@
+//! What a caller got wrong, with the values that show it. Every message ends in what to do about it.
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+/// A configuration that cannot be optimised.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ConfigError {
+    /// An axis of the table has no entries.
+    #[error("{axis} is 0: give at least 1")]
+    EmptyAxis {
+        /// Name of the axis.
+        axis: &'static str,
+    },
+    /// The table has more values than can be numbered.
+    #[error("the table would hold {values} values: stay at or below 4294967295 (2^32 - 1)")]
+    TooLarge {
+        /// Number of values asked for (saturating).
+        values: u64,
+    },
+    /// A scalar parameter lies outside its range.
+    #[error("{name} is {value}: give a value {expected}")]
+    OutOfRange {
+        /// Name of the parameter.
+        name: &'static str,
+        /// The value given.
+        value: f64,
+        /// The admissible range, in words.
+        expected: &'static str,
+    },
+    /// A list of filter weights cannot serve as a kernel.
+    #[error("{kernel} has weight {weight} at tap {index}: weights must be finite and at least 0")]
+    BadTap {
+        /// Which kernel.
+        kernel: &'static str,
+        /// Position in the list of taps.
+        index: usize,
+        /// The weight given.
+        weight: f64,
+    },
+    /// A kernel without any positive weight.
+    #[error("{kernel} has no positive weight: give at least one tap above 0")]
+    EmptyKernel {
+        /// Which kernel.
+        kernel: &'static str,
+    },
+    /// A dimension group without dimensions.
+    #[error("dimension group {group} is empty: name at least one dimension")]
+    EmptyGroup {
+        /// Position of the group's term.
+        group: usize,
+    },
+    /// A dimension group names a dimension that the table does not have.
+    #[error("dimension group {group} names dimension {dimension}, but the table has {dims}: name dimensions from 0 to {}", dims - 1)]
+    NoSuchDimension {
+        /// Position of the group's term.
+        group: usize,
+        /// The dimension named.
+        dimension: usize,
+        /// Dimensions of the table.
+        dims: usize,
+    },
+    /// A dimension group names a dimension twice.
+    #[error("dimension group {group} names dimension {dimension} twice: name each dimension once")]
+    RepeatedDimension {
+        /// Position of the group's term.
+        group: usize,
+        /// The dimension named.
+        dimension: usize,
+    },
+    /// Nothing to optimise.
+    #[error("the objective has no term with a positive weight: give at least one")]
+    NoTerms,
+    /// The list of domains does not fit the table.
+    #[error("{given} domains for {dims} dimensions: give one domain per dimension")]
+    DomainCount {
+        /// Domains given.
+        given: usize,
+        /// Dimensions of the table.
+        dims: usize,
+    },
+    /// A list of numbers does not fit the table.
+    #[error("{what} holds {given} values, but the table has {expected}: give one value per coordinate")]
+    ValueCount {
+        /// Which list.
+        what: &'static str,
+        /// Values given.
+        given: usize,
+        /// Values expected.
+        expected: usize,
+    },
+    /// A point lies outside the unit cube.
+    #[error("point coordinate {index} is {value}: give finite values in [0, 1)")]
+    BadPoint {
+        /// Index into the list of coordinates.
+        index: usize,
+        /// The value.
+        value: f64,
+    },
+    /// A slice refers to something that the objective does not have.
+    #[error("slice {slice}: {what} is {given}, but the objective has {limit}: stay below it")]
+    BadSlice {
+        /// Position of the slice in the list.
+        slice: usize,
+        /// Which field.
+        what: &'static str,
+        /// The value given.
+        given: usize,
+        /// Number of such things.
+        limit: usize,
+    },
+    /// A slice's direction or cut does not fit its dimension group.
+    #[error(
+        "slice {slice}: {what} has {given} components, but its group has {expected} dimensions: give one each"
+    )]
+    SliceShape {
+        /// Position of the slice in the list.
+        slice: usize,
+        /// Which field.
+        what: &'static str,
+        /// Components given.
+        given: usize,
+        /// Components expected.
+        expected: usize,
+    },
+    /// A number of a slice cannot be used.
+    #[error("slice {slice}: {what} is {value}: give {expected}")]
+    SliceValue {
+        /// Position of the slice in the list.
+        slice: usize,
+        /// Which field.
+        what: &'static str,
+        /// The value given.
+        value: f64,
+        /// What is admissible, in words.
+        expected: &'static str,
+    },
+}
+
+/// A table that cannot be made, read or written.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum TableError {
+    /// The extent or the number of dimensions is not admissible.
+    #[error(transparent)]
+    Extent(#[from] ConfigError),
+    /// The number of values does not fit the extent.
+    #[error("{given} values for a table of {expected}: give frames * height * width * spp * dims values")]
+    Length {
+        /// Values given.
+        given: usize,
+        /// Values expected.
+        expected: usize,
+    },
+    /// A value lies outside `[0, 1)` or is not finite.
+    #[error("the value at [frame {}, y {}, x {}, sample {}, dim {}] is {value}: values must lie in [0, 1)", at[0], at[1], at[2], at[3], at[4])]
+    Value {
+        /// `[frame, y, x, sample, dim]`.
+        at: [usize; 5],
+        /// The value.
+        value: f32,
+    },
+    /// The file could not be opened, read or written.
+    #[error("cannot {verb} {}: {source}; check the path and its permissions", path.display())]
+    Io {
+        /// `read` or `write`.
+        verb: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// The system's word.
+        source: std::io::Error,
+    },
+    /// The file is not a table in the format of this crate.
+    #[error("{} is not a sample table: {reason}", path.display())]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong and what is expected, in words.
+        reason: String,
+    },
+}

@@ -1,0 +1,129 @@
+//! The lattice on which samples live, and the only file that knows the order of samples in memory.
+//!
+//! A sample table is `[frame][y][x][sample][dim]` in C order. A *site* is one pixel of one frame; sites are
+//! numbered `(frame * height + y) * width + x`, samples `site * spp + sample`.
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::ConfigError;
+
+/// Number of frames, rows, columns and samples per pixel of a table; every one at least 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Extent {
+    /// Frames; the animation wraps, frame `frames` is frame 0 again.
+    pub frames: usize,
+    /// Rows of a frame, in pixels; the tile wraps.
+    pub height: usize,
+    /// Columns of a frame, in pixels; the tile wraps.
+    pub width: usize,
+    /// Samples per pixel and frame.
+    pub spp: usize,
+}
+
+/// Position of a pixel of one frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Site {
+    /// Frame, in `0..frames`.
+    pub frame: usize,
+    /// Row, in `0..height`.
+    pub y: usize,
+    /// Column, in `0..width`.
+    pub x: usize,
+}
+
+impl Extent {
+    /// Sites (pixels × frames) of the table.
+    pub fn sites(&self) -> usize {
+        self.frames * self.height * self.width
+    }
+
+    /// Samples of the table.
+    pub fn samples(&self) -> usize {
+        self.sites() * self.spp
+    }
+
+    /// Number of the site; the position must lie inside the extent.
+    pub fn site_index(&self, site: Site) -> usize {
+        (site.frame * self.height + site.y) * self.width + site.x
+    }
+
+    /// Position of the site with this number.
+    pub fn site(&self, index: usize) -> Site {
+        let x = index % self.width;
+        let row = index / self.width;
+        Site { frame: row / self.height, y: row % self.height, x }
+    }
+
+    /// The site that lies `(dt, dy, dx)` away, wrapping in all three axes.
+    pub fn wrapped(&self, site: Site, (dt, dy, dx): (i64, i64, i64)) -> Site {
+        let wrap = |at: usize, by: i64, len: usize| (at as i64 + by).rem_euclid(len as i64) as usize;
+        Site {
+            frame: wrap(site.frame, dt, self.frames),
+            y: wrap(site.y, dy, self.height),
+            x: wrap(site.x, dx, self.width),
+        }
+    }
+
+    /// Checks that no axis is empty and that `samples * dims` values can be numbered with 32 bits.
+    pub(crate) fn validate(&self, dims: usize) -> Result<(), ConfigError> {
+        let axes = [
+            ("frames", self.frames),
+            ("height", self.height),
+            ("width", self.width),
+            ("spp", self.spp),
+            ("dims", dims),
+        ];
+        let mut values = 1_u64;
+        for (axis, len) in axes {
+            if len == 0 {
+                return Err(ConfigError::EmptyAxis { axis });
+            }
+            values = values.saturating_mul(len as u64);
+        }
+        if values > u64::from(u32::MAX) {
+            return Err(ConfigError::TooLarge { values });
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sites_are_numbered_in_c_order_and_back() {
+        let extent = Extent { frames: 3, height: 5, width: 7, spp: 2 };
+        let mut expected = 0;
+        for frame in 0..3 {
+            for y in 0..5 {
+                for x in 0..7 {
+                    let site = Site { frame, y, x };
+                    assert_eq!(extent.site_index(site), expected);
+                    assert_eq!(extent.site(expected), site);
+                    expected += 1;
+                }
+            }
+        }
+        assert_eq!(extent.sites(), expected);
+        assert_eq!(extent.samples(), 2 * expected);
+    }
+
+    #[test]
+    fn all_three_axes_wrap_both_ways() {
+        let extent = Extent { frames: 3, height: 5, width: 7, spp: 1 };
+        let corner = Site { frame: 0, y: 0, x: 0 };
+        assert_eq!(extent.wrapped(corner, (-1, -1, -1)), Site { frame: 2, y: 4, x: 6 });
+        assert_eq!(extent.wrapped(corner, (-7, 12, 16)), Site { frame: 2, y: 2, x: 2 });
+    }
+
+    #[test]
+    fn empty_and_oversized_extents_are_named() {
+        let extent = Extent { frames: 1, height: 0, width: 7, spp: 1 };
+        assert_eq!(extent.validate(2), Err(ConfigError::EmptyAxis { axis: "height" }));
+        let extent = Extent { frames: 1 << 12, height: 1 << 12, width: 1 << 12, spp: 1 };
+        assert_eq!(extent.validate(1), Err(ConfigError::TooLarge { values: 1 << 36 }));
+        let extent = Extent { frames: usize::MAX, height: usize::MAX, width: 2, spp: 1 };
+        assert_eq!(extent.validate(1), Err(ConfigError::TooLarge { values: u64::MAX }));
+    }
+}
