@@ -2,11 +2,13 @@
 
 mod domain;
 mod error;
+mod kernel;
 mod lattice;
 mod stream;
 mod table;
 
 pub use domain::{BELOW_ONE, Domain};
 pub use error::{ConfigError, TableError};
+pub use kernel::{Kernel, SpatialKernel, SpatialTap, Tap, TemporalKernel};
 pub use lattice::{Extent, Site};
 pub use table::SampleTable;
