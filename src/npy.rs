@@ -12,7 +12,6 @@ use std::io::{self, Read, Write};
 use std::path::Path;
 
 use ndarray_npy::npy::header::{Header, Layout, ParseHeaderError, ReadHeaderError, WriteHeaderError};
-use ndarray_npy::{ReadDataError, ReadableElement};
 
 use crate::atomic::Pending;
 use crate::error::{FormatError, TableError};
@@ -24,6 +23,9 @@ const MAGIC: &[u8; 6] = b"\x93NUMPY";
 
 /// Longest header that is read; numpy draws the same line. Headers of tables have 128 bytes.
 const MAX_HEADER: usize = 10_000;
+
+/// Most axes that a shape in an error message has, and most axes of a numpy array.
+const MAX_AXES: usize = 64;
 
 /// Deepest nesting of brackets in a header. A table's has 2, a structured dtype 4. The time of the parser
 /// doubles with each level, so a damaged header could keep it busy forever.
@@ -164,14 +166,15 @@ fn read(path: &Path) -> Result<SampleTable, Fault> {
     if given != expected {
         return Err(FormatError::Length { given, expected, shape }.into());
     }
-    // The reader aborts where there is not enough memory: ask first.
-    Vec::<f32>::new().try_reserve_exact(len).map_err(io::Error::from)?;
-    let values =
-        f32::read_to_end_exact_vec(&mut file, &header.type_descriptor, len).map_err(|error| match error {
-            ReadDataError::Io(error) => error,
-            // Lengths were checked: the file changed while it was read.
-            other => io::Error::other(other),
-        })?;
+    // Read here, and not by `ReadableElement`, because that aborts where memory does not suffice.
+    let mut values = Vec::new();
+    values.try_reserve_exact(len).map_err(io::Error::from)?;
+    let mut block = [0; 1 << 14];
+    while values.len() < len {
+        let bytes = block.len().min(size_of::<f32>() * (len - values.len()));
+        file.read_exact(&mut block[..bytes])?;
+        values.extend(block[..bytes].as_chunks().0.iter().map(|&bytes| f32::from_le_bytes(bytes)));
+    }
     SampleTable::new(extent, dims, values).map_err(|error| match error {
         TableError::Value { at, value } => FormatError::Value { at, value }.into(),
         other => io::Error::other(other).into(),
@@ -220,13 +223,17 @@ fn read_header(file: &mut File, bytes: u64) -> Result<(Header, u64), Fault> {
         return Err(FormatError::Header { reason }.into());
     }
     match Header::from_reader(&mut text.as_slice()) {
+        Ok(Header { shape, .. }) if shape.len() > MAX_AXES => {
+            let reason = format!("the shape has {} axes", shape.len());
+            Err(FormatError::Header { reason }.into())
+        }
         Ok(header) => Ok((header, needed)),
         Err(ReadHeaderError::Io(error)) => Err(error.into()),
         Err(ReadHeaderError::Parse(error)) => {
             let reason = match error {
                 // The parser's own report draws the whole header over several lines.
                 ParseHeaderError::DictParse(_) => {
-                    format!("not a dictionary: {}", text[prefix..].trim_ascii().escape_ascii())
+                    format!("not a dictionary: {}", String::from_utf8_lossy(text[prefix..].trim_ascii()))
                 }
                 // The word of `ndarray-npy` 0.10 for this key has a letter too many.
                 ParseHeaderError::MissingKey(key) if key == "shaper" => "missing key: shape".into(),
@@ -240,6 +247,7 @@ fn read_header(file: &mut File, bytes: u64) -> Result<(Header, u64), Fault> {
 /// A quotation from a damaged file, fit for a message.
 fn shortened(text: String) -> String {
     const LONGEST: usize = 200;
+    let text = text.replace(char::is_control, "\u{fffd}");
     match text.char_indices().nth(LONGEST) {
         Some((end, _)) => format!("{} ...", &text[..end]),
         None => text,

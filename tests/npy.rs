@@ -32,7 +32,9 @@ fn npy(dictionary: &str, values: &[u8]) -> Vec<u8> {
     let header = (10 + dictionary.len() + 1).next_multiple_of(64) - 10;
     let mut file = b"\x93NUMPY\x01\x00".to_vec();
     file.extend((header as u16).to_le_bytes());
-    file.extend(format!("{dictionary:<width$}\n", width = header - 1).bytes());
+    file.extend(dictionary.bytes());
+    file.resize(10 + header - 1, b' ');
+    file.push(b'\n');
     file.extend(values);
     file
 }
@@ -193,6 +195,9 @@ fn damaged_headers_are_recognised() {
     // As deep as the parser is allowed to see, and as long: it must answer in a moment.
     let long = npy(&("[[[[".to_owned() + &"1,".repeat(4000)), &[]);
     assert!(matches!(problem(&long, &["not a dictionary"]), FormatError::Header { .. }));
+
+    let many = f32s(&format!("({})", "1,".repeat(4000)), &[0.5]);
+    assert!(matches!(problem(&many, &["4000 axes"]), FormatError::Header { .. }));
 
     for (dictionary, word) in [
         ("{'descr': '<f4', 'fortran_order': False}", "missing key: shape)"),
