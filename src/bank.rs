@@ -1,0 +1,201 @@
+//! Directions in three and more dimensions, with their laws tabulated once.
+//!
+//! Computing the law of a projection costs far more than transporting a small subset along it. A bank therefore
+//! keeps the laws of a few hundred directions, the rows of random orthonormal frames. The law depends on the
+//! absolute values of the components only, whatever their order; a random signed permutation of the axes per use
+//! turns each stored direction into `2^d d!` of them and keeps its frame orthonormal.
+
+use nalgebra::DMatrix;
+use rand::RngExt;
+use rand_distr::StandardNormal;
+use rayon::prelude::*;
+
+use crate::lanes::{LANES, Row};
+use crate::stream::{self, Purpose};
+use crate::target::Target;
+
+/// Tabulated laws of directions in one number of dimensions.
+#[derive(Clone, Debug)]
+pub(crate) struct Bank {
+    blocks: Vec<Block>,
+}
+
+/// As many directions as there are lanes.
+#[derive(Clone, Debug)]
+pub(crate) struct Block {
+    /// Unit vectors, one row of lanes per dimension.
+    pub theta: Vec<Row>,
+    /// Integral of the quantile of `|theta|` from 0 to each knot, and its derivative with respect to the knot's
+    /// place.
+    knots: Vec<[[f64; LANES]; 2]>,
+}
+
+/// Where a boundary between quantile cells lies among the knots, with the weights of cubic Hermite interpolation.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Boundary {
+    interval: u32,
+    weights: [f64; 4],
+}
+
+/// Blocks per bank: 512 directions, 1 MiB.
+const BLOCKS: usize = 32;
+/// Intervals between knots.
+const INTERVALS: usize = 128;
+
+impl Bank {
+    /// The bank for `dims ≥ 3` dimensions; always the same.
+    pub(crate) fn new(dims: usize, target: &Target) -> Self {
+        let blocks = (0..BLOCKS).into_par_iter().map(|index| Block::new(dims, index as u64, target));
+        Self { blocks: blocks.collect() }
+    }
+
+    pub(crate) fn block(&self, index: usize) -> &Block {
+        &self.blocks[index]
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.blocks.len()
+    }
+}
+
+impl Block {
+    fn new(dims: usize, index: u64, target: &Target) -> Self {
+        let mut generator = stream::generator(0, Purpose::Frames, dims as u64, index);
+        let mut directions = Vec::new();
+        while directions.len() < LANES {
+            // The orthonormal factor of a Gaussian matrix is a random frame (uniform up to signs, which each use
+            // draws anew).
+            let gaussian = DMatrix::from_fn(dims, dims, |_, _| generator.sample(StandardNormal));
+            let frame: DMatrix<f64> = gaussian.qr().q();
+            directions.extend(frame.column_iter().map(|column| column.iter().copied().collect::<Vec<f64>>()));
+        }
+        directions.truncate(LANES);
+        let theta = (0..dims).map(|dim| std::array::from_fn(|lane| directions[lane][dim] as f32)).collect();
+        let mut knots = vec![[[0.0; LANES]; 2]; INTERVALS + 1];
+        for (lane, direction) in directions.iter().enumerate() {
+            // The law belongs to the direction as it will be used, rounded.
+            let lengths: Vec<f64> = direction.iter().map(|&component| f64::from(component as f32).abs()).collect();
+            let law = target.project(&lengths);
+            for (knot, [integral, derivative]) in knots.iter_mut().enumerate() {
+                let place = knot as f64 / INTERVALS as f64;
+                let (u, spread) = unplaced(place);
+                integral[lane] = law.quantile_integral(u);
+                derivative[lane] = law.quantile(u) * spread / INTERVALS as f64;
+            }
+        }
+        Self { theta, knots }
+    }
+
+    /// Integral of the quantile from 0 to the boundary, per lane.
+    #[inline(always)]
+    pub(crate) fn integral(&self, boundary: &Boundary) -> [f64; LANES] {
+        let [here, next] = [0, 1].map(|step| &self.knots[boundary.interval as usize + step]);
+        let [a, b, c, d] = boundary.weights;
+        let mut integral = [0.0; LANES];
+        for lane in 0..LANES {
+            integral[lane] = (a * here[0][lane] + b * here[1][lane]) + (c * next[0][lane] + d * next[1][lane]);
+        }
+        integral
+    }
+
+    /// The same for a single lane.
+    pub(crate) fn integral_of_lane(&self, boundary: &Boundary, lane: usize) -> f64 {
+        let [here, next] = [0, 1].map(|step| &self.knots[boundary.interval as usize + step]);
+        let [a, b, c, d] = boundary.weights;
+        (a * here[0][lane] + b * here[1][lane]) + (c * next[0][lane] + d * next[1][lane])
+    }
+}
+
+impl Boundary {
+    /// The boundary at `u` in `[0, 1]`.
+    pub(crate) fn new(u: f64) -> Self {
+        let place = placed(u) * INTERVALS as f64;
+        let interval = (place as usize).min(INTERVALS - 1);
+        let t = place - interval as f64;
+        let s = 1.0 - t;
+        let weights = [(1.0 + 2.0 * t) * s * s, t * s * s, t * t * (3.0 - 2.0 * t), -t * t * s];
+        Self { interval: interval as u32, weights }
+    }
+
+    /// The `n + 1` boundaries of `n` equal cells.
+    pub(crate) fn grid(n: usize) -> Vec<Self> {
+        (0..=n).map(|i| Self::new(i as f64 / n as f64)).collect()
+    }
+}
+
+/// Exponent that crowds the knots towards 0 and 1, where the quantile of a sum of `d` uniforms rises as `u^(1/d)`.
+const CROWDING: i32 = 3;
+
+/// Quantile level at this place in `[0, 1]` among the knots, and the level's derivative with respect to the place.
+fn unplaced(place: f64) -> (f64, f64) {
+    let (low, high) = (place.powi(CROWDING), (1.0 - place).powi(CROWDING));
+    let sum = low + high;
+    let slope = place.powi(CROWDING - 1) * (1.0 - place).powi(CROWDING - 1);
+    (low / sum, f64::from(CROWDING) * slope / (sum * sum))
+}
+
+/// Inverse of [`unplaced`].
+fn placed(u: f64) -> f64 {
+    let (low, high) = (u.cbrt(), (1.0 - u).cbrt());
+    low / (low + high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_and_levels_are_inverse() {
+        for i in 0..=1000 {
+            let place = f64::from(i) / 1000.0;
+            let (u, spread) = unplaced(place);
+            assert!((placed(u) - place).abs() < 1e-12, "{place}");
+            if (1..1000).contains(&i) {
+                let secant = (unplaced(place + 1e-6).0 - unplaced(place - 1e-6).0) / 2e-6;
+                assert!((secant - spread).abs() < 1e-6, "{place}");
+            }
+        }
+    }
+
+    #[test]
+    fn frames_are_orthonormal() {
+        for dims in [3, 4, 7, 16] {
+            let bank = Bank::new(dims, &Target::UniformCube);
+            let block = bank.block(3);
+            let dot = |a: usize, b: usize| block.theta.iter().map(|row| f64::from(row[a] * row[b])).sum::<f64>();
+            for a in 0..dims.min(LANES) {
+                for b in 0..dims.min(LANES) {
+                    let expected = if a == b { 1.0 } else { 0.0 };
+                    assert!((dot(a, b) - expected).abs() < 1e-6); // f32 rounding of unit vectors
+                }
+            }
+        }
+    }
+
+    /// Interpolation may cost accuracy, but less than the optimiser's `f32` does over a subset's spacing.
+    #[test]
+    fn tabulated_cell_means_are_those_of_the_law() {
+        for dims in [3, 4, 5, 8, 16] {
+            let bank = Bank::new(dims, &Target::UniformCube);
+            for index in [0, 17] {
+                let block = bank.block(index);
+                for lane in [0, 5, 15] {
+                    let lengths: Vec<f64> = block.theta.iter().map(|row| f64::from(row[lane]).abs()).collect();
+                    let law = Target::UniformCube.project(&lengths);
+                    for n in [1, 2, 7, 36, 400, 4096] {
+                        let grid = Boundary::grid(n);
+                        for (cell, expected) in law.cell_means(n).enumerate() {
+                            let integral = |at: usize| block.integral_of_lane(&grid[at], lane);
+                            let mean = (integral(cell + 1) - integral(cell)) * n as f64;
+                            assert!(
+                                (mean - expected).abs() < 2e-6,
+                                "dims {dims} n {n} cell {cell}: {mean} {expected}"
+                            );
+                            assert_eq!(block.integral(&grid[cell])[lane], integral(cell));
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,306 @@
+//! Descent: updates of a table in place. Owns its moments, knows nothing of transport.
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::domain::Domain;
+use crate::engine::Pull;
+use crate::error::ConfigError;
+
+/// How a step moves the samples.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Descent {
+    /// Each coordinate moves by `rate` times its mean pull over the slices that held it: a fixed point iteration
+    /// with `rate = 1` as its natural step and nothing to tune.
+    Barycentric {
+        /// Step size; 1 moves to the barycentre of the targets.
+        rate: Schedule,
+    },
+    /// Stochastic gradient descent: `v ← momentum · v + g`, `x ← x − rate · v`. The gradient is scaled by the mean
+    /// number of slices per coordinate, so that `rate = 1` without momentum is the barycentric step in the mean.
+    Sgd {
+        /// Step size.
+        rate: Schedule,
+        /// Share of the velocity that is kept, in `[0, 1)`.
+        momentum: f64,
+    },
+    /// Adam (Kingma and Ba 2015, Algorithm 1), with bias correction.
+    Adam {
+        /// Step size: roughly the distance that a coordinate moves per step.
+        rate: Schedule,
+        /// Decay of the first moment, in `[0, 1)`.
+        beta1: f64,
+        /// Decay of the second moment, in `[0, 1)`.
+        beta2: f64,
+        /// Added to the root of the second moment; above 0. The gradient's unit is that of a coordinate.
+        epsilon: f64,
+    },
+}
+
+/// A number that changes over a run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Schedule {
+    /// Value at the first step; above 0.
+    pub first: f64,
+    /// Value that the last step approaches; above 0.
+    pub last: f64,
+    /// How the value gets there.
+    pub shape: Shape,
+}
+
+/// How a schedule goes from its first to its last value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Shape {
+    /// Stays at the first value.
+    Constant,
+    /// By equal factors.
+    Geometric,
+    /// Along half a period of a cosine: flat, steep, flat.
+    Cosine,
+}
+
+impl Schedule {
+    /// From `first` to `last` by equal factors.
+    pub const fn geometric(first: f64, last: f64) -> Self {
+        Self { first, last, shape: Shape::Geometric }
+    }
+
+    /// Always `value`.
+    pub const fn constant(value: f64) -> Self {
+        Self { first: value, last: value, shape: Shape::Constant }
+    }
+
+    /// From `first` to `last` along half a cosine.
+    pub const fn cosine(first: f64, last: f64) -> Self {
+        Self { first, last, shape: Shape::Cosine }
+    }
+
+    /// Value after the share `progress` of the run; clamped to `[0, 1]`.
+    pub fn at(&self, progress: f64) -> f64 {
+        let progress = progress.clamp(0.0, 1.0);
+        match self.shape {
+            Shape::Constant => self.first,
+            Shape::Geometric => self.first * (self.last / self.first).powf(progress),
+            Shape::Cosine => {
+                self.last + (self.first - self.last) * 0.5 * (1.0 + (std::f64::consts::PI * progress).cos())
+            }
+        }
+    }
+}
+
+impl Descent {
+    /// Barycentric steps from 1 to 0.02: the default.
+    pub const fn barycentric() -> Self {
+        Descent::Barycentric { rate: Schedule::geometric(1.0, 0.02) }
+    }
+
+    /// Gradient descent with momentum 0.9 and a decaying step.
+    pub const fn sgd() -> Self {
+        Descent::Sgd { rate: Schedule::geometric(0.1, 0.002), momentum: 0.9 }
+    }
+
+    /// Adam with a decaying step.
+    pub const fn adam() -> Self {
+        Descent::Adam { rate: Schedule::geometric(0.02, 0.0004), beta1: 0.9, beta2: 0.99, epsilon: 1e-8 }
+    }
+
+    /// The step size's schedule.
+    pub fn rate(&self) -> &Schedule {
+        match self {
+            Descent::Barycentric { rate } | Descent::Sgd { rate, .. } | Descent::Adam { rate, .. } => rate,
+        }
+    }
+
+    pub(crate) fn validate(&self) -> Result<(), ConfigError> {
+        let check = |name, value: f64, good: bool, expected| {
+            if good { Ok(()) } else { Err(ConfigError::OutOfRange { name, value, expected }) }
+        };
+        let share = |name, value| check(name, value, (0.0..1.0).contains(&value), "in [0, 1)");
+        let positive = |name, value| check(name, value, value > 0.0 && value.is_finite(), "above 0 and finite");
+        positive("the first step size", self.rate().first)?;
+        positive("the last step size", self.rate().last)?;
+        match *self {
+            Descent::Barycentric { .. } => Ok(()),
+            Descent::Sgd { momentum, .. } => share("momentum", momentum),
+            Descent::Adam { beta1, beta2, epsilon, .. } => {
+                share("beta1", beta1)?;
+                share("beta2", beta2)?;
+                positive("epsilon", epsilon)
+            }
+        }
+    }
+}
+
+impl Default for Descent {
+    fn default() -> Self {
+        Self::barycentric()
+    }
+}
+
+/// A descent on its way: its moments and the number of steps that made them.
+#[derive(Clone, Debug)]
+pub(crate) struct Walker {
+    descent: Descent,
+    steps: i32,
+    first: Vec<f32>,
+    second: Vec<f32>,
+}
+
+/// Coordinates per task: a few pages, whatever the number of threads.
+const TASK: usize = 1 << 14;
+
+impl Walker {
+    pub(crate) fn new(descent: Descent, coordinates: usize) -> Self {
+        let (first, second) = match descent {
+            Descent::Barycentric { .. } => (0, 0),
+            Descent::Sgd { .. } => (coordinates, 0),
+            Descent::Adam { .. } => (coordinates, coordinates),
+        };
+        Self { descent, steps: 0, first: vec![0.0; first], second: vec![0.0; second] }
+    }
+
+    /// Moves the points by what a step pulled, at step size `rate`, and clears the pull.
+    ///
+    /// `domains` has one entry per dimension; `mean_hits` is the mean number of slices per coordinate.
+    pub(crate) fn step(&mut self, rate: f64, mean_hits: f64, domains: &[Domain], points: &mut [f32], pull: &mut Pull) {
+        self.steps = self.steps.saturating_add(1);
+        let task = TASK.next_multiple_of(domains.len());
+        let tasks = points
+            .par_chunks_mut(task)
+            .zip(pull.sums.par_chunks_mut(task))
+            .zip(pull.hits.par_chunks_mut(task));
+        let rate = rate as f32;
+        match self.descent {
+            Descent::Barycentric { .. } => tasks.for_each(|((points, sums), hits)| {
+                move_points(domains, points, |i| {
+                    let pulled = if hits[i] > 0.0 { rate * sums[i] / hits[i] } else { 0.0 };
+                    (sums[i], hits[i]) = (0.0, 0.0);
+                    pulled
+                });
+            }),
+            Descent::Sgd { momentum, .. } => {
+                let (scale, momentum) = (1.0 / mean_hits as f32, momentum as f32);
+                tasks.zip(self.first.par_chunks_mut(task)).for_each(|(((points, sums), hits), velocity)| {
+                    hits.fill(0.0);
+                    move_points(domains, points, |i| {
+                        velocity[i] = momentum * velocity[i] + scale * sums[i];
+                        sums[i] = 0.0;
+                        rate * velocity[i]
+                    });
+                });
+            }
+            Descent::Adam { beta1, beta2, epsilon, .. } => {
+                let scale = 1.0 / mean_hits as f32;
+                let [unbias1, unbias2] = [beta1, beta2].map(|beta| 1.0 / (1.0 - beta.powi(self.steps)) as f32);
+                let [beta1, beta2, epsilon] = [beta1, beta2, epsilon].map(|value| value as f32);
+                let moments = self.first.par_chunks_mut(task).zip(self.second.par_chunks_mut(task));
+                tasks.zip(moments).for_each(|(((points, sums), hits), (first, second))| {
+                    hits.fill(0.0);
+                    move_points(domains, points, |i| {
+                        let pulled = scale * sums[i];
+                        sums[i] = 0.0;
+                        first[i] = beta1 * first[i] + (1.0 - beta1) * pulled;
+                        second[i] = beta2 * second[i] + (1.0 - beta2) * pulled * pulled;
+                        rate * (unbias1 * first[i]) / ((unbias2 * second[i]).sqrt() + epsilon)
+                    });
+                });
+            }
+        }
+    }
+}
+
+/// Adds `motion(i)` to the `i`th coordinate and brings it back into its domain.
+#[inline(always)]
+fn move_points(domains: &[Domain], points: &mut [f32], mut motion: impl FnMut(usize) -> f32) {
+    for (sample, point) in points.chunks_exact_mut(domains.len()).enumerate() {
+        for (dim, (coordinate, domain)) in point.iter_mut().zip(domains).enumerate() {
+            *coordinate = domain.admit(*coordinate + motion(sample * domains.len() + dim));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn walk(descent: Descent, pulls: &[f32], rate: f64) -> Vec<f32> {
+        let mut walker = Walker::new(descent, 1);
+        let mut points = [0.5];
+        let mut trace = Vec::new();
+        for &sum in pulls {
+            let mut pull = Pull { sums: vec![sum], hits: vec![2.0], ..Pull::default() };
+            walker.step(rate, 2.0, &[Domain::Interval], &mut points, &mut pull);
+            assert_eq!((pull.sums[0], pull.hits[0]), (0.0, 0.0));
+            trace.push(points[0]);
+        }
+        trace
+    }
+
+    fn assert_close(trace: &[f32], expected: &[f64]) {
+        for (at, expected) in trace.iter().zip(expected) {
+            assert!((f64::from(*at) - expected).abs() < 1e-6, "{trace:?}"); // a few roundings of f32 near 0.5
+        }
+    }
+
+    #[test]
+    fn barycentric_moves_to_the_mean_of_the_pulls() {
+        assert_close(&walk(Descent::barycentric(), &[0.2, -0.1], 0.5), &[0.55, 0.525]);
+    }
+
+    #[test]
+    fn a_coordinate_that_no_slice_held_stays() {
+        let mut walker = Walker::new(Descent::barycentric(), 1);
+        let mut points = [0.3];
+        let mut pull = Pull { sums: vec![0.0], hits: vec![0.0], ..Pull::default() };
+        walker.step(1.0, 1.0, &[Domain::Interval], &mut points, &mut pull);
+        assert_eq!(points, [0.3]);
+    }
+
+    #[test]
+    fn sgd_follows_its_recurrence() {
+        // Pulls 0.1, -0.05, 0.2 after scaling by 1/2; v: 0.1, 0.04, 0.236; x += 0.1 v.
+        let descent = Descent::Sgd { rate: Schedule::constant(0.1), momentum: 0.9 };
+        assert_close(&walk(descent, &[0.2, -0.1, 0.4], 0.1), &[0.51, 0.514, 0.5376]);
+    }
+
+    #[test]
+    fn adam_follows_its_recurrence() {
+        // Kingma and Ba's Algorithm 1 by hand with beta1 = 0.5, beta2 = 0.75, epsilon = 0.01, rate = 0.1 and the
+        // (scaled) pulls 0.1 and 0.3. Step 1: m = .05, v = .0025, unbiased .1 and .01, x += .1 * .1 / .11.
+        // Step 2: m = .175, v = .024375, unbiased .175/.75 and .024375/.4375.
+        let descent =
+            Descent::Adam { rate: Schedule::constant(0.1), beta1: 0.5, beta2: 0.75, epsilon: 0.01 };
+        let first = 0.5 + 0.1 * 0.1 / 0.11;
+        let second = first + 0.1 * (0.175 / 0.75) / ((0.024375_f64 / 0.4375).sqrt() + 0.01);
+        assert_close(&walk(descent, &[0.2, 0.6], 0.1), &[first, second]);
+    }
+
+    #[test]
+    fn schedules_begin_and_end_where_they_say() {
+        for schedule in [Schedule::geometric(1.0, 0.02), Schedule::cosine(1.0, 0.02)] {
+            assert!((schedule.at(0.0) - 1.0).abs() < 1e-12);
+            assert!((schedule.at(1.0) - 0.02).abs() < 1e-12);
+            assert!((0..100).all(|i| schedule.at(f64::from(i) / 100.0) > schedule.at(f64::from(i + 1) / 100.0)));
+        }
+        assert!((Schedule::geometric(1.0, 0.01).at(0.5) - 0.1).abs() < 1e-12);
+        assert!((Schedule::cosine(1.0, 0.0).at(1.0 / 3.0) - 0.75).abs() < 1e-12);
+        assert_eq!(Schedule::constant(0.3).at(0.7), 0.3);
+    }
+
+    #[test]
+    fn bad_settings_are_named() {
+        let name = |descent: Descent| match descent.validate() {
+            Err(ConfigError::OutOfRange { name, .. }) => name,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(name(Descent::Barycentric { rate: Schedule::constant(0.0) }), "the first step size");
+        assert_eq!(name(Descent::Barycentric { rate: Schedule::geometric(1.0, f64::NAN) }), "the last step size");
+        assert_eq!(name(Descent::Sgd { rate: Schedule::constant(1.0), momentum: 1.0 }), "momentum");
+        let adam = |beta1, beta2, epsilon| Descent::Adam { rate: Schedule::constant(1.0), beta1, beta2, epsilon };
+        assert_eq!(name(adam(-0.1, 0.9, 1e-8)), "beta1");
+        assert_eq!(name(adam(0.9, 1.0, 1e-8)), "beta2");
+        assert_eq!(name(adam(0.9, 0.99, 0.0)), "epsilon");
+    }
+}

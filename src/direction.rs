@@ -1,0 +1,109 @@
+//! Slicing directions of a dimension group, drawn for one subset at a time.
+
+use rand::{Rng, RngExt};
+
+use crate::bank::Bank;
+use crate::lanes::{LANES, Row};
+use crate::target::Target;
+
+/// Draws the directions of subsets in one number of dimensions.
+///
+/// * One dimension has one direction.
+/// * In the plane the directions of a subset divide the half circle evenly, from a phase that its caller
+///   stratifies over the subsets of a step.
+/// * In more dimensions they are rows of random orthonormal frames ([`Bank`]); orthonormal frames and even angles
+///   are variance reduction over independent directions (Sisouk et al. 2025; Petrovic et al. 2025).
+#[derive(Clone, Debug)]
+pub(crate) struct Slicer {
+    dims: usize,
+    per_subset: usize,
+    axis_share: f64,
+    bank: Option<Bank>,
+}
+
+/// Directions of one subset: lanes `0..count` are unit vectors, the others zero.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Directions {
+    /// Directions in use.
+    pub count: usize,
+    /// Components, one row of lanes per dimension.
+    pub theta: Vec<Row>,
+    /// Block of the bank that the lanes come from, in three and more dimensions.
+    pub block: usize,
+    /// Lanes that were replaced by a coordinate axis.
+    pub on_axis: [bool; LANES],
+}
+
+impl Slicer {
+    /// Draws `per_subset` directions (`1..=LANES`; one in one dimension), of which the share `axis_share` lies
+    /// on coordinate axes.
+    pub(crate) fn new(dims: usize, per_subset: usize, axis_share: f64, target: &Target) -> Self {
+        let per_subset = if dims == 1 { 1 } else { per_subset.min(LANES) };
+        Self { dims, per_subset, axis_share, bank: (dims > 2).then(|| Bank::new(dims, target)) }
+    }
+
+    pub(crate) fn per_subset(&self) -> usize {
+        self.per_subset
+    }
+
+    pub(crate) fn bank(&self) -> Option<&Bank> {
+        self.bank.as_ref()
+    }
+
+    /// Draws directions; `phase` in `[0, 1)` turns the fan of the plane.
+    pub(crate) fn draw(&self, phase: f64, generator: &mut impl Rng, directions: &mut Directions) {
+        directions.count = self.per_subset;
+        directions.on_axis = [false; LANES];
+        directions.theta.clear();
+        directions.theta.resize(self.dims, [0.0; LANES]);
+        match &self.bank {
+            None if self.dims == 1 => directions.theta[0][0] = 1.0,
+            None => self.fan(phase, &mut directions.theta),
+            Some(bank) => self.pick(bank, generator, directions),
+        }
+        if self.axis_share > 0.0 && self.dims > 1 {
+            self.align(generator, directions);
+        }
+    }
+
+    fn fan(&self, phase: f64, theta: &mut [Row]) {
+        for lane in 0..self.per_subset {
+            let angle = std::f64::consts::PI * (lane as f64 + phase) / self.per_subset as f64;
+            let (sin, cos) = angle.sin_cos();
+            theta[0][lane] = cos as f32;
+            theta[1][lane] = sin as f32;
+        }
+    }
+
+    fn pick(&self, bank: &Bank, generator: &mut impl Rng, directions: &mut Directions) {
+        directions.block = generator.random_range(0..bank.len());
+        let block = bank.block(directions.block);
+        let signs: u64 = generator.random();
+        // A random permutation of the axes by insertion (Fisher and Yates), without a buffer.
+        for (dim, row) in block.theta.iter().enumerate() {
+            let sign = if signs >> (dim % 64) & 1 == 0 { 1.0 } else { -1.0 };
+            let place = generator.random_range(0..=dim);
+            directions.theta.swap(place, dim);
+            for (component, stored) in directions.theta[place].iter_mut().zip(row).take(self.per_subset) {
+                *component = sign * stored;
+            }
+        }
+    }
+
+    /// Replaces whole frames by the coordinate axes, so that every axis gets its share.
+    fn align(&self, generator: &mut impl Rng, directions: &mut Directions) {
+        let frames = self.per_subset / self.dims;
+        let wanted = self.axis_share * self.per_subset as f64 / self.dims as f64;
+        let replaced = ((wanted + generator.random::<f64>()) as usize).min(frames);
+        for frame in 0..replaced {
+            for axis in 0..self.dims {
+                // In the plane, directions half a fan apart are orthogonal; in a bank, frames are consecutive.
+                let lane = if self.dims == 2 { frame + axis * frames } else { frame * self.dims + axis };
+                directions.on_axis[lane] = true;
+                for (dim, row) in directions.theta.iter_mut().enumerate() {
+                    row[lane] = if dim == axis { 1.0 } else { 0.0 };
+                }
+            }
+        }
+    }
+}

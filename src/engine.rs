@@ -1,0 +1,185 @@
+//! One step's slices, in parallel, summed in a fixed order.
+//!
+//! The subsets of a step are cut into chunks of fixed size; workers transport them into buffers of their own, and
+//! the displacements are then added to the samples one chunk after the other. No result depends on how many
+//! threads there are. Nothing is allocated once the buffers have grown to their size.
+
+use pulp::{Arch, NullaryFnOnce};
+use rayon::prelude::*;
+
+use crate::direction::Directions;
+use crate::lanes::{self, Gather, LaneBuffers};
+use crate::law::{LaneLaw, Tabulated, Trapezoid};
+use crate::long::{self, LongBuffers, LongLaw};
+use crate::objective::{Draw, Objective, Order, PlannedTerm};
+
+/// Subsets per chunk: large enough to pay for handing it to a thread.
+const CHUNK: usize = 32;
+/// Chunks in flight: bounds the memory of a large step.
+const IN_FLIGHT: usize = 64;
+
+/// Sum of displacements along the directions of the slices, and how many slices there were, per coordinate.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Pull {
+    /// Sum of `d · mass · displacement · theta` over slices, where `d` is the number of dimensions of the slice's
+    /// group (`E[theta thetaᵀ] = I / d`).
+    pub sums: Vec<f32>,
+    /// Sum of `mass` over the slices that saw the coordinate.
+    pub hits: Vec<f32>,
+    /// Slices of the step.
+    pub slices: u64,
+    /// Sum over slices and samples of `mass · displacement²`, and of `mass`.
+    pub squares: f64,
+    /// See `squares`.
+    pub mass: f64,
+}
+
+/// Workers' buffers and the order of visits.
+pub(crate) struct Engine {
+    arch: Arch,
+    orders: Vec<Order>,
+    draws: Vec<Draw>,
+    chunks: Vec<Chunk>,
+}
+
+#[derive(Default)]
+struct Chunk {
+    directions: Directions,
+    cut: Vec<Option<f32>>,
+    subset: Vec<u32>,
+    samples: Vec<u32>,
+    moves: Vec<f32>,
+    lanes: LaneBuffers,
+    long: LongBuffers,
+    slices: u64,
+    squares: f64,
+    mass: f64,
+    ends: Vec<usize>,
+}
+
+impl Engine {
+    pub(crate) fn new() -> Self {
+        Self { arch: Arch::new(), orders: Vec::new(), draws: Vec::new(), chunks: Vec::new() }
+    }
+
+    /// Transports all slices of a step from `points` and adds what they pull to `pull`, which has one entry per
+    /// coordinate.
+    pub(crate) fn pull(&mut self, objective: &Objective, seed: u64, step: u64, points: &[f32], pull: &mut Pull) {
+        let Self { arch, orders, draws, chunks } = self;
+        objective.draw_subsets(seed, step, orders, draws);
+        (pull.slices, pull.squares, pull.mass) = (0, 0.0, 0.0);
+        for draws in draws.chunks(CHUNK * IN_FLIGHT) {
+            let used = draws.len().div_ceil(CHUNK);
+            chunks.resize_with(chunks.len().max(used), Chunk::default);
+            let chunks = &mut chunks[..used];
+            chunks.par_iter_mut().zip(draws.par_chunks(CHUNK)).for_each(|(chunk, draws)| {
+                arch.dispatch(Transport { objective, seed, step, points, draws, chunk });
+            });
+            for (chunk, draws) in chunks.iter().zip(draws.chunks(CHUNK)) {
+                chunk.add_to(objective, draws, pull);
+            }
+        }
+    }
+}
+
+/// The work of one chunk, compiled once per instruction set.
+struct Transport<'a> {
+    objective: &'a Objective,
+    seed: u64,
+    step: u64,
+    points: &'a [f32],
+    draws: &'a [Draw],
+    chunk: &'a mut Chunk,
+}
+
+impl NullaryFnOnce for Transport<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { objective, seed, step, points, draws, chunk } = self;
+        chunk.samples.clear();
+        chunk.moves.clear();
+        chunk.ends.clear();
+        (chunk.slices, chunk.squares, chunk.mass) = (0, 0.0, 0.0);
+        for draw in draws {
+            let term = &objective.terms[draw.term as usize];
+            objective.draw_directions(seed, step, draw, &mut chunk.directions, &mut chunk.cut);
+            term.family.select(draw.member as usize, draw.level, &mut chunk.subset);
+            chunk.transport(objective, term, points);
+            chunk.samples.extend_from_slice(&chunk.subset);
+            chunk.ends.push(chunk.samples.len());
+        }
+    }
+}
+
+impl Chunk {
+    /// Transports the selected subset along its directions and appends the moves.
+    #[inline(always)]
+    fn transport(&mut self, objective: &Objective, term: &PlannedTerm, points: &[f32]) {
+        let (n, dims) = (self.subset.len(), &term.spec.dims);
+        let first = self.moves.len();
+        self.moves.resize(first + n * dims.len(), 0.0);
+        let moves = &mut self.moves[first..];
+        let gather = Gather { samples: &self.subset, points, stride: objective.dims, dims, cut: &self.cut };
+        let Directions { count, theta, block, on_axis } = &self.directions;
+        let block = term.slicer.bank().map(|bank| bank.block(*block));
+        self.slices += *count as u64;
+        let mass = match &term.weights {
+            None => n as f64,
+            Some(weights) => weights.iter().sum(),
+        };
+        self.mass += *count as f64 * mass;
+        if let Some(plan) = term.sizes.get(&n) {
+            let law = match block {
+                None => LaneLaw::Trapezoid(Trapezoid::new(theta)),
+                Some(block) => LaneLaw::Tabulated(Tabulated::new(&self.directions, block, &plan.grid)),
+            };
+            let squares = lanes::transport(&gather, theta, &law, &plan.network, &mut self.lanes, moves);
+            self.squares += f64::from(squares);
+            return;
+        }
+        for lane in 0..*count {
+            let component = |dim: usize| theta[dim][lane];
+            let law = match block {
+                Some(block) if !on_axis[lane] => {
+                    let lowest = theta.iter().map(|row| f64::from(row[lane].min(0.0))).sum();
+                    LongLaw::Tabulated { block, lane, lowest }
+                }
+                // A coordinate axis has the law of one dimension; otherwise there are at most two.
+                Some(_) => LongLaw::Closed(term.spec.target.project(&[1.0])),
+                None => {
+                    let direction = [0, 1].map(|dim| theta.get(dim).map_or(0.0, |row| f64::from(row[lane])));
+                    LongLaw::Closed(term.spec.target.project(&direction))
+                }
+            };
+            self.squares += long::transport(&gather, component, &law, term.weights.as_deref(), &mut self.long, moves);
+        }
+    }
+
+    /// Adds the moves to the samples that they belong to.
+    fn add_to(&self, objective: &Objective, draws: &[Draw], pull: &mut Pull) {
+        pull.slices += self.slices;
+        pull.squares += self.squares;
+        pull.mass += self.mass;
+        let mut begin = 0;
+        let mut moves = self.moves.as_slice();
+        for (draw, &end) in draws.iter().zip(&self.ends) {
+            let term = &objective.terms[draw.term as usize];
+            let dims = &term.spec.dims;
+            let count = term.slicer.per_subset() as f32;
+            let (these, rest) = moves.split_at((end - begin) * dims.len());
+            let samples = &self.samples[begin..end];
+            for (position, (&sample, along)) in samples.iter().zip(these.chunks_exact(dims.len())).enumerate() {
+                let mass = term.weights.as_ref().map_or(1.0, |weights| weights[position] as f32);
+                for (&dim, along) in dims.iter().zip(along) {
+                    let coordinate = sample as usize * objective.dims + dim;
+                    pull.sums[coordinate] += dims.len() as f32 * along;
+                    pull.hits[coordinate] += count * mass;
+                }
+            }
+            moves = rest;
+            begin = end;
+        }
+    }
+}

@@ -1,0 +1,5 @@
+//! Measuring tables.
+
+mod bound;
+
+pub use bound::{Bound, bound};

@@ -1,0 +1,333 @@
+//! The optimiser: a configuration, a table on its way, steps and runs.
+
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+use serde::{Deserialize, Serialize};
+
+use crate::class::Form;
+use crate::descent::{Descent, Walker};
+use crate::domain::Domain;
+use crate::engine::{Engine, Pull};
+use crate::error::{ConfigError, TableError};
+use crate::kernel::{Kernel, SpatialKernel, TemporalKernel};
+use crate::lattice::Extent;
+use crate::objective::{DimensionGroup, Objective, Slicing, Term};
+use crate::table::SampleTable;
+
+/// Everything that determines a table, but for the length of the run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Config {
+    /// Frames, height, width and samples per pixel.
+    pub extent: Extent,
+    /// Dimensions of a sample.
+    pub dims: usize,
+    /// Interval or torus, per dimension.
+    pub domains: Vec<Domain>,
+    /// What is optimised.
+    pub terms: Vec<Term>,
+    /// How slices are drawn.
+    pub slicing: Slicing,
+    /// How steps move the samples.
+    pub descent: Descent,
+    /// Names every random number: the same seed gives the same bits.
+    pub seed: u64,
+}
+
+impl Config {
+    /// The defaults for a table of this extent: interval domains, the spatial Gaussian of the papers (`sigma_px =
+    /// 2.1`), times the perceptual kernel at 60 frames per second if there are several frames, consecutive pairs of
+    /// dimensions and all of them at half their weight, unbiased, barycentric steps.
+    pub fn new(extent: Extent, dims: usize) -> Self {
+        let temporal = match extent.frames {
+            0 | 1 => TemporalKernel::None,
+            _ => TemporalKernel::Perceptual { fps: 60.0 },
+        };
+        let kernel = Kernel::product(SpatialKernel::Gaussian { sigma_px: 2.1 }, temporal);
+        let groups = DimensionGroup::pairs_and_whole(dims);
+        Self {
+            extent,
+            dims,
+            domains: vec![Domain::Interval; dims],
+            terms: Objective::blue_noise(&[kernel], Form::LevelSets, &groups, &extent),
+            slicing: Slicing::default(),
+            descent: Descent::default(),
+            seed: 0,
+        }
+    }
+}
+
+/// When a run ends.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Until {
+    /// After this many slices per pixel and frame (rounded up to whole steps).
+    SlicesPerClass(u64),
+    /// After this many epochs, of `directions` slices per pixel and frame each.
+    Epochs(u64),
+    /// After about this many seconds. A brief calibration fixes the number of steps that fit, schedules follow that
+    /// number, and [`RunReport::slices_per_class`] makes the very same table again, anywhere.
+    Seconds(f64),
+    /// As soon as the mean squared displacement falls by less than the share `improvement` from one window to the
+    /// next, and at the latest after `at_most` slices per pixel and frame, the number that schedules follow.
+    Converged {
+        /// Least relative improvement worth going on for, in `[0, 1)`.
+        improvement: f64,
+        /// Length of a window, in steps.
+        window_steps: u64,
+        /// Slices per pixel and frame.
+        at_most: u64,
+    },
+}
+
+/// What a run tells its caller after each step.
+#[derive(Clone, Copy, Debug)]
+pub struct StepReport {
+    /// Steps taken in this run.
+    pub step: u64,
+    /// Steps that the run is planned to take.
+    pub steps: u64,
+    /// Slices drawn in this run, over all terms.
+    pub slices: u64,
+    /// Root mean square distance along the slices between the samples and their targets, before the step. A noisy
+    /// sign of progress; the objective itself is measured by [`crate::metrics::bound()`].
+    pub displacement: f64,
+    /// Step size.
+    pub rate: f64,
+    /// Time since the first step of the run.
+    pub elapsed: Duration,
+}
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Ended {
+    /// All planned steps were taken.
+    Finished,
+    /// The rule of [`Until::Converged`] held.
+    Converged,
+    /// The caller's closure broke it off.
+    Stopped,
+}
+
+/// What a run did.
+#[derive(Clone, Copy, Debug)]
+pub struct RunReport {
+    /// Why it ended.
+    pub ended: Ended,
+    /// Steps taken.
+    pub steps: u64,
+    /// Slices drawn, over all terms.
+    pub slices: u64,
+    /// Slices per pixel and frame that the run was planned for. As [`Until::SlicesPerClass`] it gives the same steps.
+    pub slices_per_class: u64,
+    /// Time of the steps, without calibration.
+    pub elapsed: Duration,
+}
+
+/// Optimises a table of white noise, or a given one.
+pub struct Optimizer {
+    config: Config,
+    objective: Objective,
+    points: Vec<f32>,
+    walker: Walker,
+    engine: Engine,
+    pull: Pull,
+    mean_hits: f64,
+    steps: u64,
+}
+
+impl Optimizer {
+    /// Starts from white noise.
+    ///
+    /// # Errors
+    /// Whatever [`Objective::new`] refuses, and descent parameters outside their ranges.
+    pub fn new(config: Config) -> Result<Self, ConfigError> {
+        let objective =
+            Objective::new(config.extent, config.dims, &config.domains, &config.terms, &config.slicing)?;
+        config.descent.validate()?;
+        let points = crate::stream::uniforms(config.seed, config.extent.samples() * config.dims);
+        let coordinates = points.len();
+        let pull = Pull { sums: vec![0.0; coordinates], hits: vec![0.0; coordinates], ..Pull::default() };
+        Ok(Self {
+            walker: Walker::new(config.descent, coordinates),
+            mean_hits: objective.mean_hits(),
+            engine: Engine::new(),
+            steps: 0,
+            pull,
+            points,
+            objective,
+            config,
+        })
+    }
+
+    /// Starts from a table, as made by an earlier run.
+    ///
+    /// # Errors
+    /// As [`Optimizer::new`]; a table whose shape is not that of the configuration.
+    pub fn from_table(config: Config, table: SampleTable) -> Result<Self, TableError> {
+        let mut optimizer = Self::new(config)?;
+        let expected = optimizer.points.len();
+        if (table.extent(), table.dims()) != (optimizer.config.extent, optimizer.config.dims) {
+            return Err(TableError::Length { given: table.values().len(), expected });
+        }
+        optimizer.points = table.into_values();
+        Ok(optimizer)
+    }
+
+    /// The configuration.
+    pub fn config(&self) -> &Config {
+        &self.config
+    }
+
+    /// The planned objective.
+    pub fn objective(&self) -> &Objective {
+        &self.objective
+    }
+
+    /// The table as it is now; a copy.
+    pub fn table(&self) -> SampleTable {
+        SampleTable::trusted(self.config.extent, self.config.dims, self.points.clone())
+    }
+
+    /// The table, without the optimiser around it.
+    pub fn into_table(self) -> SampleTable {
+        SampleTable::trusted(self.config.extent, self.config.dims, self.points)
+    }
+
+    /// Takes one step of size `rate` and returns the root mean square displacement before it, and the slices drawn.
+    ///
+    /// For schedules of your own; [`Optimizer::run`] follows that of the configuration.
+    pub fn step(&mut self, rate: f64) -> (f64, u64) {
+        let drawn = self.pull();
+        self.walker.step(rate, self.mean_hits, &self.config.domains, &mut self.points, &mut self.pull);
+        self.steps += 1;
+        drawn
+    }
+
+    fn pull(&mut self) -> (f64, u64) {
+        let Self { engine, objective, config, steps, points, pull, .. } = self;
+        engine.pull(objective, config.seed, *steps, points, pull);
+        ((pull.squares / pull.mass.max(f64::MIN_POSITIVE)).sqrt(), pull.slices)
+    }
+
+    /// Takes steps until `until`, or until `observe` breaks off. The table keeps what was reached.
+    ///
+    /// A run begins with fresh moments and at the start of the schedule; its slices go on where the last run's ended.
+    ///
+    /// # Errors
+    /// A number of seconds or an improvement outside its range. Nothing is changed then.
+    pub fn run(
+        &mut self,
+        until: Until,
+        mut observe: impl FnMut(&StepReport) -> ControlFlow<()>,
+    ) -> Result<RunReport, ConfigError> {
+        let steps = self.plan(until)?;
+        self.walker = Walker::new(self.config.descent, self.points.len());
+        let begin = Instant::now();
+        let mut progress = Progress::default();
+        let mut report = RunReport {
+            ended: Ended::Finished,
+            steps: 0,
+            slices: 0,
+            slices_per_class: self.slices_per_class(steps),
+            elapsed: Duration::ZERO,
+        };
+        for step in 0..steps {
+            let rate = self.config.descent.rate().at(step as f64 / steps as f64);
+            let (displacement, slices) = self.step(rate);
+            report.steps += 1;
+            report.slices += slices;
+            let elapsed = begin.elapsed();
+            let seen = StepReport { step: step + 1, steps, slices: report.slices, displacement, rate, elapsed };
+            if observe(&seen).is_break() {
+                report.ended = Ended::Stopped;
+                break;
+            }
+            if let Until::Converged { improvement, window_steps, .. } = until
+                && progress.stalls(displacement * displacement, improvement, window_steps)
+            {
+                report.ended = Ended::Converged;
+                break;
+            }
+        }
+        report.elapsed = begin.elapsed();
+        Ok(report)
+    }
+
+    /// Steps that a run takes at most.
+    fn plan(&mut self, until: Until) -> Result<u64, ConfigError> {
+        let per_step = self.objective.slices_per_class_and_step();
+        let steps = |slices: u64| (slices as f64 / per_step * (1.0 - 1e-12)).ceil() as u64;
+        let out_of_range = |name, value, expected| Err(ConfigError::OutOfRange { name, value, expected });
+        match until {
+            Until::SlicesPerClass(slices) => Ok(steps(slices)),
+            Until::Epochs(epochs) => {
+                Ok(steps(epochs.saturating_mul(self.config.slicing.directions as u64)))
+            }
+            Until::Converged { improvement, .. } if !(0.0..1.0).contains(&improvement) => {
+                out_of_range("the least improvement", improvement, "in [0, 1)")
+            }
+            Until::Converged { window_steps: 0, .. } => {
+                out_of_range("the window", 0.0, "of at least 1 step")
+            }
+            Until::Converged { at_most, .. } => Ok(steps(at_most)),
+            Until::Seconds(seconds) if !(seconds > 0.0 && seconds <= 1e9) => {
+                out_of_range("the number of seconds", seconds, "above 0, at most 1e9")
+            }
+            Until::Seconds(seconds) => {
+                // A whole number of slices per class, so that the same run can be asked for by that number.
+                let slices = seconds / self.seconds_per_step() * per_step;
+                Ok(steps(slices.max(1.0) as u64))
+            }
+        }
+    }
+
+    /// Slices per class that plan this number of steps.
+    fn slices_per_class(&self, steps: u64) -> u64 {
+        (steps as f64 * self.objective.slices_per_class_and_step()).floor() as u64
+    }
+
+    /// Times a few steps that leave the table as it is.
+    fn seconds_per_step(&mut self) -> f64 {
+        const ENOUGH: Duration = Duration::from_millis(30);
+        let steps = self.steps;
+        let mut best = f64::INFINITY;
+        let begin = Instant::now();
+        // The first step grows the buffers and does not count.
+        for trial in 0.. {
+            let start = Instant::now();
+            self.step(0.0);
+            if trial > 0 {
+                best = best.min(start.elapsed().as_secs_f64());
+                if begin.elapsed() > ENOUGH {
+                    break;
+                }
+            }
+        }
+        self.steps = steps;
+        best.max(1e-9)
+    }
+}
+
+/// Mean squared displacement of this and the last window.
+#[derive(Default)]
+struct Progress {
+    last: Option<f64>,
+    sum: f64,
+    steps: u64,
+}
+
+impl Progress {
+    fn stalls(&mut self, squared: f64, improvement: f64, window: u64) -> bool {
+        self.sum += squared;
+        self.steps += 1;
+        if self.steps < window {
+            return false;
+        }
+        let mean = self.sum / window as f64;
+        let stalled = self.last.is_some_and(|last| mean > last * (1.0 - improvement));
+        *self = Self { last: Some(mean), sum: 0.0, steps: 0 };
+        stalled
+    }
+}
