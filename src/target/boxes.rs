@@ -17,6 +17,12 @@ const CELLS_PER_REST: usize = 4;
 const CELLS: f64 = 256.0;
 /// Rounding of the slopes (1e-16 over the square of this) stays harmless in cells of any length.
 const EXACT_NARROWEST: f64 = 1e-4;
+/// Extra nodes near the end of the support: the first, as a share of the sum of the other widths, ...
+const LADDER_START: f64 = 0.01;
+/// ... the ratio of neighbours ...
+const LADDER_RATIO: f64 = 1.25;
+/// ... and how many.
+const LADDER_STEPS: i32 = 24;
 /// Nodes closer than this are one node.
 const SAME_NODE: f64 = 1e-13;
 /// Windows of at most this many cells are summed; longer ones are differences of a running sum.
@@ -71,11 +77,19 @@ fn mesh(widths: &[f64]) -> Vec<f64> {
             nodes.extend(parts.map(|part| node + part * rest));
         }
     }
+    let narrowest = widths[widths.len() - 1];
+    // Up to the narrowest width the law is a power; above it, x^D asks for cells in proportion to x.
+    nodes.retain(|&node| node > narrowest);
+    nodes.push(0.0);
+    nodes.push(narrowest);
+    if widths.len() > 4 {
+        let first = narrowest.max(LADDER_START * rest);
+        nodes.extend((0..LADDER_STEPS).map(|step| first * LADDER_RATIO.powi(step)));
+    }
     nodes.retain(|&node| node < 0.5 - SAME_NODE);
     nodes.sort_unstable_by(f64::total_cmp);
     nodes.dedup_by(|next, kept| *next - *kept < SAME_NODE);
     nodes.push(0.5);
-    let narrowest = widths[widths.len() - 1];
     if widths.len() <= 4 && narrowest > EXACT_NARROWEST {
         return nodes; // quartics are exact
     }
@@ -83,8 +97,8 @@ fn mesh(widths: &[f64]) -> Vec<f64> {
     let mut fine = vec![0.0];
     for pair in nodes.windows(2) {
         let length = pair[1] - pair[0];
-        // The power law of the first cell is exact up to the narrowest width.
-        let exact = pair[0] == 0.0 && length <= narrowest * (1.0 + 1e-9);
+        // Cell 0 holds a power law, not a quartic.
+        let exact = pair[0] == 0.0;
         let cuts = if exact { 1.0 } else { (length * CELLS).ceil().max(least_cuts) };
         fine.extend((1..cuts as usize).map(|cut| pair[0] + length * (cut as f64 / cuts)));
         fine.push(pair[1]);

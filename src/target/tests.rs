@@ -15,10 +15,10 @@ fn measure() {
         let l = p.support().1;
         let e = worst.entry(format!("{:02} {name}", w.len())).or_insert([0.0; 6]);
         e[0] = e[0].max((p.cdf(x) - u).abs());
-        if u > 1e-12 && u < 1.0 - 1e-5 { e[1] = e[1].max((p.quantile(u) - x).abs() / l); }
-        else if u > 1e-30 && u < 0.5 { e[2] = e[2].max((p.quantile(u) - x).abs() / l); }
+        if u > 1e-6 && u < 1.0 - 1e-5 { e[1] = e[1].max((p.quantile(u) - x).abs() / l); }
+        else if u > 1e-15 && u < 0.5 { e[2] = e[2].max((p.quantile(u) - x).abs() / l); }
         e[3] = e[3].max((p.quantile_integral(u) - j).abs() / l);
-        if u > 1e-12 && u < 0.5 {
+        if u > 1e-6 && u < 0.5 {
         e[4] = e[4].max((p.cell_mean(0.0, u) - j/u).abs() / l);}
     }
     for (k, e) in worst { println!("{k:14} cdf {:.1e} q {:.1e} qtail {:.1e} int {:.1e} mean(0,u) {:.1e}", e[0], e[1], e[2], e[3], e[4]); }
