@@ -28,8 +28,8 @@ impl Target {
     /// The direction need not be a unit vector: its components must be finite, with a finite sum of absolute
     /// values, and may have any sign. A zero or empty direction gives the point mass at 0.
     ///
-    /// Up to four components that are not negligible cost a microsecond; beyond that the time is
-    /// O(`D`·grid) for a grid of at most a thousand nodes. See [`Projected`] for the accuracy.
+    /// O(`D`·grid), for a grid of at most eight pieces up to `D` = 4 and of some hundreds beyond or where a component is
+    /// below 1e-4 of the sum. See [`Projected`] for the accuracy.
     pub fn project(&self, direction: &[f64]) -> Projected {
         match self {
             Target::UniformCube => Projected::of_cube(direction),

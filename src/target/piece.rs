@@ -57,12 +57,12 @@ impl Piece {
 
     /// The `t` with `cdf(t) = u`, for `u` between `below` and `above = cdf(1)`.
     pub(super) fn quantile(&self, u: f64, above: f64) -> f64 {
-        if u >= above {
-            return 1.0;
-        }
         let sought = u - self.below;
         if sought <= 0.0 {
             return 0.0;
+        }
+        if u >= above {
+            return 1.0;
         }
         match self.rise {
             Rise::Power { mass, exponent } => (sought / mass).powf(1.0 / exponent).min(1.0),

@@ -19,9 +19,17 @@ const FEW_PIECES: usize = 16;
 ///
 /// # Accuracy
 ///
-/// With `L` = Σ|theta_i|: up to four components are closed forms (piecewise polynomials on all their breakpoints), exact to rounding.
-/// More are piecewise quartics on a graded mesh. Components below 1e-8·`L` are replaced by their
-/// mean, which moves `Q` by at most half of their sum.
+/// With `L` = Σ|theta_i|, measured against exact rational arithmetic in 90 directions of 1 to 16 dimensions:
+///
+/// | components | distribution function | `Q(u)` and means, 1e-6 < u < 1 − 1e-5 |
+/// |---|---|---|
+/// | up to 4, none below 1e-4·`L`: closed forms | 2e-12 | 2e-12·`L` |
+/// | 5 to 16, comparable | 3e-11 | 5e-9·`L`, typically 3e-10·`L` |
+/// | 3 to 16, over up to seven orders of magnitude | 4e-8 | 5e-8·`L`, typically 1e-10·`L` |
+///
+/// `Q` is infinitely steep at the ends of the support, where its error reaches 6e-6·`L` for u between 1e-15 and 1e-6;
+/// means over such cells, weighted by their width, are not affected. Components below 1e-8·`L` are replaced by
+/// their mean, which moves `Q` by at most half of their sum. Beyond 16 dimensions only consistency was tested.
 ///
 /// [^boxes]: de Boor, Höllig, Riemenschneider 1993, *Box Splines*, Springer.
 /// [^salaun]: Salaün, Georgiev, Seidel, Singh 2022, "Scalable multi-class sampling via filtered sliced optimal
