@@ -8,17 +8,20 @@ use crate::engine::Pull;
 use crate::error::ConfigError;
 
 /// How a step moves the samples.
+///
+/// All three follow the same *pull*: for each coordinate, `d` times its mean displacement along the slices of the step
+/// that held it, in a group of `d` dimensions. That is the negative gradient of the objective, divided by the number of
+/// slices that held the coordinate: its unit is that of a coordinate, whatever the size of the table or the batch.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Descent {
-    /// Each coordinate moves by `rate` times its mean pull over the slices that held it: a fixed point iteration
+    /// `x ← x + rate · pull`: a fixed point iteration towards the barycentre of the targets (`E[theta thetaᵀ] = I / d`),
     /// with `rate = 1` as its natural step and nothing to tune.
     Barycentric {
         /// Step size; 1 moves to the barycentre of the targets.
         rate: Schedule,
     },
-    /// Stochastic gradient descent: `v ← momentum · v + g`, `x ← x − rate · v`. The gradient is scaled by the mean
-    /// number of slices per coordinate, so that `rate = 1` without momentum is the barycentric step in the mean.
+    /// Stochastic gradient descent with momentum: `v ← momentum · v + pull`, `x ← x + rate · v`.
     Sgd {
         /// Step size.
         rate: Schedule,
@@ -33,7 +36,7 @@ pub enum Descent {
         beta1: f64,
         /// Decay of the second moment, in `[0, 1)`.
         beta2: f64,
-        /// Added to the root of the second moment; above 0. The gradient's unit is that of a coordinate.
+        /// Added to the root of the second moment; above 0.
         epsilon: f64,
     },
 }
@@ -77,6 +80,15 @@ impl Schedule {
         Self { first, last, shape: Shape::Cosine }
     }
 
+    pub(crate) fn validate(&self) -> Result<(), ConfigError> {
+        for (name, value) in [("the first step size", self.first), ("the last step size", self.last)] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(ConfigError::OutOfRange { name, value, expected: "above 0 and finite" });
+            }
+        }
+        Ok(())
+    }
+
     /// Value after the share `progress` of the run; clamped to `[0, 1]`.
     pub fn at(&self, progress: f64) -> f64 {
         let progress = progress.clamp(0.0, 1.0);
@@ -118,16 +130,14 @@ impl Descent {
             if good { Ok(()) } else { Err(ConfigError::OutOfRange { name, value, expected }) }
         };
         let share = |name, value| check(name, value, (0.0..1.0).contains(&value), "in [0, 1)");
-        let positive = |name, value| check(name, value, value > 0.0 && value.is_finite(), "above 0 and finite");
-        positive("the first step size", self.rate().first)?;
-        positive("the last step size", self.rate().last)?;
+        self.rate().validate()?;
         match *self {
             Descent::Barycentric { .. } => Ok(()),
             Descent::Sgd { momentum, .. } => share("momentum", momentum),
             Descent::Adam { beta1, beta2, epsilon, .. } => {
                 share("beta1", beta1)?;
                 share("beta2", beta2)?;
-                positive("epsilon", epsilon)
+                check("epsilon", epsilon, epsilon > 0.0 && epsilon.is_finite(), "above 0 and finite")
             }
         }
     }
@@ -137,6 +147,17 @@ impl Default for Descent {
     fn default() -> Self {
         Self::barycentric()
     }
+}
+
+/// Moves the points by `rate` times their mean pull and clears the pull.
+pub(crate) fn project(rate: f64, domains: &[Domain], points: &mut [f32], pull: &mut Pull) {
+    let task = TASK.next_multiple_of(domains.len());
+    let tasks =
+        points.par_chunks_mut(task).zip(pull.sums.par_chunks_mut(task)).zip(pull.hits.par_chunks_mut(task));
+    let rate = rate as f32;
+    tasks.for_each(|((points, sums), hits)| {
+        move_points(domains, points, |i| rate * take_mean(&mut sums[i], &mut hits[i]));
+    });
 }
 
 /// A descent on its way: its moments and the number of steps that made them.
@@ -161,46 +182,35 @@ impl Walker {
         Self { descent, steps: 0, first: vec![0.0; first], second: vec![0.0; second] }
     }
 
-    /// Moves the points by what a step pulled, at step size `rate`, and clears the pull.
-    ///
-    /// `domains` has one entry per dimension; `mean_hits` is the mean number of slices per coordinate.
-    pub(crate) fn step(&mut self, rate: f64, mean_hits: f64, domains: &[Domain], points: &mut [f32], pull: &mut Pull) {
+    /// Moves the points by what a step pulled, at step size `rate`, and clears the pull. `domains` has one entry per
+    /// dimension.
+    pub(crate) fn step(&mut self, rate: f64, domains: &[Domain], points: &mut [f32], pull: &mut Pull) {
         self.steps = self.steps.saturating_add(1);
+        if let Descent::Barycentric { .. } = self.descent {
+            return project(rate, domains, points, pull);
+        }
         let task = TASK.next_multiple_of(domains.len());
-        let tasks = points
-            .par_chunks_mut(task)
-            .zip(pull.sums.par_chunks_mut(task))
-            .zip(pull.hits.par_chunks_mut(task));
+        let tasks =
+            points.par_chunks_mut(task).zip(pull.sums.par_chunks_mut(task)).zip(pull.hits.par_chunks_mut(task));
         let rate = rate as f32;
         match self.descent {
-            Descent::Barycentric { .. } => tasks.for_each(|((points, sums), hits)| {
-                move_points(domains, points, |i| {
-                    let pulled = if hits[i] > 0.0 { rate * sums[i] / hits[i] } else { 0.0 };
-                    (sums[i], hits[i]) = (0.0, 0.0);
-                    pulled
-                });
-            }),
+            Descent::Barycentric { .. } => {}
             Descent::Sgd { momentum, .. } => {
-                let (scale, momentum) = (1.0 / mean_hits as f32, momentum as f32);
+                let momentum = momentum as f32;
                 tasks.zip(self.first.par_chunks_mut(task)).for_each(|(((points, sums), hits), velocity)| {
-                    hits.fill(0.0);
                     move_points(domains, points, |i| {
-                        velocity[i] = momentum * velocity[i] + scale * sums[i];
-                        sums[i] = 0.0;
+                        velocity[i] = momentum * velocity[i] + take_mean(&mut sums[i], &mut hits[i]);
                         rate * velocity[i]
                     });
                 });
             }
             Descent::Adam { beta1, beta2, epsilon, .. } => {
-                let scale = 1.0 / mean_hits as f32;
                 let [unbias1, unbias2] = [beta1, beta2].map(|beta| 1.0 / (1.0 - beta.powi(self.steps)) as f32);
                 let [beta1, beta2, epsilon] = [beta1, beta2, epsilon].map(|value| value as f32);
                 let moments = self.first.par_chunks_mut(task).zip(self.second.par_chunks_mut(task));
                 tasks.zip(moments).for_each(|(((points, sums), hits), (first, second))| {
-                    hits.fill(0.0);
                     move_points(domains, points, |i| {
-                        let pulled = scale * sums[i];
-                        sums[i] = 0.0;
+                        let pulled = take_mean(&mut sums[i], &mut hits[i]);
                         first[i] = beta1 * first[i] + (1.0 - beta1) * pulled;
                         second[i] = beta2 * second[i] + (1.0 - beta2) * pulled * pulled;
                         rate * (unbias1 * first[i]) / ((unbias2 * second[i]).sqrt() + epsilon)
@@ -209,6 +219,14 @@ impl Walker {
             }
         }
     }
+}
+
+/// Mean pull on a coordinate, 0 if no slice held it; clears both.
+#[inline(always)]
+fn take_mean(sum: &mut f32, hits: &mut f32) -> f32 {
+    let mean = if *hits > 0.0 { *sum / *hits } else { 0.0 };
+    (*sum, *hits) = (0.0, 0.0);
+    mean
 }
 
 /// Adds `motion(i)` to the `i`th coordinate and brings it back into its domain.
@@ -231,7 +249,7 @@ mod tests {
         let mut trace = Vec::new();
         for &sum in pulls {
             let mut pull = Pull { sums: vec![sum], hits: vec![2.0], ..Pull::default() };
-            walker.step(rate, 2.0, &[Domain::Interval], &mut points, &mut pull);
+            walker.step(rate, &[Domain::Interval], &mut points, &mut pull);
             assert_eq!((pull.sums[0], pull.hits[0]), (0.0, 0.0));
             trace.push(points[0]);
         }
@@ -254,13 +272,13 @@ mod tests {
         let mut walker = Walker::new(Descent::barycentric(), 1);
         let mut points = [0.3];
         let mut pull = Pull { sums: vec![0.0], hits: vec![0.0], ..Pull::default() };
-        walker.step(1.0, 1.0, &[Domain::Interval], &mut points, &mut pull);
+        walker.step(1.0, &[Domain::Interval], &mut points, &mut pull);
         assert_eq!(points, [0.3]);
     }
 
     #[test]
     fn sgd_follows_its_recurrence() {
-        // Pulls 0.1, -0.05, 0.2 after scaling by 1/2; v: 0.1, 0.04, 0.236; x += 0.1 v.
+        // Two slices each, so mean pulls 0.1, -0.05, 0.2; v: 0.1, 0.04, 0.236; x += 0.1 v.
         let descent = Descent::Sgd { rate: Schedule::constant(0.1), momentum: 0.9 };
         assert_close(&walk(descent, &[0.2, -0.1, 0.4], 0.1), &[0.51, 0.514, 0.5376]);
     }
@@ -268,7 +286,7 @@ mod tests {
     #[test]
     fn adam_follows_its_recurrence() {
         // Kingma and Ba's Algorithm 1 by hand with beta1 = 0.5, beta2 = 0.75, epsilon = 0.01, rate = 0.1 and the
-        // (scaled) pulls 0.1 and 0.3. Step 1: m = .05, v = .0025, unbiased .1 and .01, x += .1 * .1 / .11.
+        // mean pulls 0.1 and 0.3. Step 1: m = .05, v = .0025, unbiased .1 and .01, x += .1 * .1 / .11.
         // Step 2: m = .175, v = .024375, unbiased .175/.75 and .024375/.4375.
         let descent =
             Descent::Adam { rate: Schedule::constant(0.1), beta1: 0.5, beta2: 0.75, epsilon: 0.01 };

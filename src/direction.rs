@@ -19,6 +19,8 @@ pub(crate) struct Slicer {
     per_subset: usize,
     axis_share: f64,
     bank: Option<Bank>,
+    /// Cosine and sine of evenly spaced angles, turned as one for each subset.
+    fan: Vec<[f64; 2]>,
 }
 
 /// Directions of one subset: lanes `0..count` are unit vectors, the others zero.
@@ -39,7 +41,14 @@ impl Slicer {
     /// on coordinate axes.
     pub(crate) fn new(dims: usize, per_subset: usize, axis_share: f64, target: &Target) -> Self {
         let per_subset = if dims == 1 { 1 } else { per_subset.min(LANES) };
-        Self { dims, per_subset, axis_share, bank: (dims > 2).then(|| Bank::new(dims, target)) }
+        let bank = (dims > 2).then(|| Bank::new(dims, target));
+        let mut slicer = Self { dims, per_subset, axis_share, bank, fan: Vec::new() };
+        let spacing = slicer.spacing();
+        slicer.fan.extend((0..per_subset).map(|lane| {
+            let (sin, cos) = (spacing * lane as f64).sin_cos();
+            [cos, sin]
+        }));
+        slicer
     }
 
     pub(crate) fn per_subset(&self) -> usize {
@@ -58,7 +67,7 @@ impl Slicer {
         directions.theta.resize(self.dims, [0.0; LANES]);
         match &self.bank {
             None if self.dims == 1 => directions.theta[0][0] = 1.0,
-            None => self.fan(phase, &mut directions.theta),
+            None => self.turn(phase, &mut directions.theta),
             Some(bank) => self.pick(bank, generator, directions),
         }
         if self.axis_share > 0.0 && self.dims > 1 {
@@ -66,12 +75,16 @@ impl Slicer {
         }
     }
 
-    fn fan(&self, phase: f64, theta: &mut [Row]) {
-        for lane in 0..self.per_subset {
-            let angle = std::f64::consts::PI * (lane as f64 + phase) / self.per_subset as f64;
-            let (sin, cos) = angle.sin_cos();
-            theta[0][lane] = cos as f32;
-            theta[1][lane] = sin as f32;
+    /// Angle between neighbours in the plane.
+    fn spacing(&self) -> f64 {
+        std::f64::consts::PI / self.per_subset as f64
+    }
+
+    fn turn(&self, phase: f64, theta: &mut [Row]) {
+        let (sin, cos) = (self.spacing() * phase).sin_cos();
+        for (lane, [fixed_cos, fixed_sin]) in self.fan.iter().enumerate() {
+            theta[0][lane] = (fixed_cos * cos - fixed_sin * sin) as f32;
+            theta[1][lane] = (fixed_sin * cos + fixed_cos * sin) as f32;
         }
     }
 

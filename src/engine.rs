@@ -11,7 +11,7 @@ use crate::direction::Directions;
 use crate::lanes::{self, Gather, LaneBuffers};
 use crate::law::{LaneLaw, Tabulated, Trapezoid};
 use crate::long::{self, LongBuffers, LongLaw};
-use crate::objective::{Draw, Objective, Order, PlannedTerm};
+use crate::objective::{Draw, Objective, Order, PlannedTerm, Role};
 
 /// Subsets per chunk: large enough to pay for handing it to a thread.
 const CHUNK: usize = 32;
@@ -21,8 +21,8 @@ const IN_FLIGHT: usize = 64;
 /// Sum of displacements along the directions of the slices, and how many slices there were, per coordinate.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pull {
-    /// Sum of `d · mass · displacement · theta` over slices, where `d` is the number of dimensions of the slice's
-    /// group (`E[theta thetaᵀ] = I / d`).
+    /// Sum of `factor · mass · displacement · theta` over slices; the factor is the number of dimensions of the slice's
+    /// group where the term is descended, and 1 where it is balanced.
     pub sums: Vec<f32>,
     /// Sum of `mass` over the slices that saw the coordinate.
     pub hits: Vec<f32>,
@@ -62,11 +62,17 @@ impl Engine {
         Self { arch: Arch::new(), orders: Vec::new(), draws: Vec::new(), chunks: Vec::new() }
     }
 
-    /// Transports all slices of a step from `points` and adds what they pull to `pull`, which has one entry per
-    /// coordinate.
-    pub(crate) fn pull(&mut self, objective: &Objective, seed: u64, step: u64, points: &[f32], pull: &mut Pull) {
+    /// Transports the slices that the terms of a role draw in a step from `points` and adds what they pull to `pull`,
+    /// which has one entry per coordinate.
+    pub(crate) fn pull(
+        &mut self,
+        objective: &Objective,
+        (seed, step, role): (u64, u64, Role),
+        points: &[f32],
+        pull: &mut Pull,
+    ) {
         let Self { arch, orders, draws, chunks } = self;
-        objective.draw_subsets(seed, step, orders, draws);
+        objective.draw_subsets(seed, step, role, orders, draws);
         (pull.slices, pull.squares, pull.mass) = (0, 0.0, 0.0);
         for draws in draws.chunks(CHUNK * IN_FLIGHT) {
             let used = draws.len().div_ceil(CHUNK);
@@ -168,13 +174,19 @@ impl Chunk {
             let term = &objective.terms[draw.term as usize];
             let dims = &term.spec.dims;
             let count = term.slicer.per_subset() as f32;
+            // E[theta thetaᵀ] = I / d makes d the natural step of a mean over directions; a projection goes as far as
+            // its target along each.
+            let factor = match term.spec.role {
+                Role::Descend => dims.len() as f32,
+                Role::Balance => 1.0,
+            };
             let (these, rest) = moves.split_at((end - begin) * dims.len());
             let samples = &self.samples[begin..end];
             for (position, (&sample, along)) in samples.iter().zip(these.chunks_exact(dims.len())).enumerate() {
                 let mass = term.weights.as_ref().map_or(1.0, |weights| weights[position] as f32);
                 for (&dim, along) in dims.iter().zip(along) {
                     let coordinate = sample as usize * objective.dims + dim;
-                    pull.sums[coordinate] += dims.len() as f32 * along;
+                    pull.sums[coordinate] += factor * along;
                     pull.hits[coordinate] += count * mass;
                 }
             }

@@ -22,6 +22,7 @@ pub(crate) const LONGEST: usize = 1024;
 pub(crate) struct LaneBuffers {
     projections: Vec<Row>,
     keys: Vec<[u32; LANES]>,
+    means: Vec<Row>,
     targets: Vec<Row>,
 }
 
@@ -75,7 +76,9 @@ pub(crate) fn transport(
     network.sort(&mut buffers.keys);
     // A power of two long, so that a masked position is inside without a check.
     buffers.targets.resize(place_mask + 1, [0.0; LANES]);
-    match_targets(&buffers.keys, law, &mut buffers.targets[..=place_mask]);
+    buffers.means.resize(n, [0.0; LANES]);
+    law.cell_means(&mut buffers.means[..n]);
+    match_targets(&buffers.keys, &buffers.means, &mut buffers.targets[..=place_mask]);
     displace(&buffers.projections, &buffers.targets, theta, moves)
 }
 
@@ -119,14 +122,13 @@ fn encode(projections: &[Row], law: &LaneLaw, place_mask: u32, keys: &mut Vec<[u
 
 /// Sends the target of each rank to the sample that has the rank.
 #[inline(always)]
-fn match_targets(keys: &[[u32; LANES]], law: &LaneLaw, targets: &mut [Row]) {
+fn match_targets(keys: &[[u32; LANES]], means: &[Row], targets: &mut [Row]) {
     let place_mask = targets.len() - 1;
-    law.for_each_cell(keys.len(), |rank, target| {
-        let key = &keys[rank];
+    for (key, mean) in keys.iter().zip(means) {
         for lane in 0..LANES {
-            targets[key[lane] as usize & place_mask][lane] = target[lane];
+            targets[key[lane] as usize & place_mask][lane] = mean[lane];
         }
-    });
+    }
 }
 
 #[inline(always)]

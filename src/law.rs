@@ -26,13 +26,12 @@ impl LaneLaw<'_> {
         }
     }
 
-    /// Calls `visit(rank, target)` once for each of `n` equal quantile cells, in no particular order, with the mean
-    /// of the quantile function over the cell.
+    /// Writes the means of the quantile function over `cells.len()` equal cells.
     #[inline(always)]
-    pub(crate) fn for_each_cell(&self, n: usize, visit: impl FnMut(usize, &Row)) {
+    pub(crate) fn cell_means(&self, cells: &mut [Row]) {
         match self {
-            LaneLaw::Trapezoid(law) => law.for_each_cell(n, visit),
-            LaneLaw::Tabulated(law) => law.for_each_cell(n, visit),
+            LaneLaw::Trapezoid(law) => law.cell_means(cells),
+            LaneLaw::Tabulated(law) => law.cell_means(cells),
         }
     }
 }
@@ -63,7 +62,8 @@ impl Trapezoid {
     }
 
     #[inline(always)]
-    fn for_each_cell(&self, n: usize, mut visit: impl FnMut(usize, &Row)) {
+    fn cell_means(&self, means: &mut [Row]) {
+        let n = means.len();
         let cells = n as f32;
         // In units of cells: the rising edge of the trapezoid ends at `edge`, inside cell `split`, whose mean is
         // `split_mean`. Before it the quantile is sqrt(2 a b u), after it a u + b / 2.
@@ -83,25 +83,22 @@ impl Trapezoid {
             let linear = slope[lane] * (edge + split[lane] + 1.0) * 0.5 + offset[lane];
             split_mean[lane] = share * rising + (1.0 - share) * linear;
         }
-        let (mut target, mut mirrored) = ([0.0; LANES], [0.0; LANES]);
-        for rank in 0..n / 2 {
+        let (lower, upper) = means.split_at_mut(n.div_ceil(2));
+        for (rank, (mean, mirrored)) in lower.iter_mut().zip(upper.iter_mut().rev()).enumerate() {
             let (cell, root_mean) = (rank as f32, root_mean(rank));
             for lane in 0..LANES {
                 let rising = tail[lane] * root_mean;
                 let linear = slope[lane] * (cell + 0.5) + offset[lane];
                 let after = if cell > split[lane] { linear } else { split_mean[lane] };
                 let above = if cell < split[lane] { rising } else { after };
-                target[lane] = self.lowest[lane] + above;
+                mean[lane] = self.lowest[lane] + above;
                 mirrored[lane] = self.lowest[lane] + (self.extent[lane] - above);
             }
-            visit(rank, &target);
-            visit(n - 1 - rank, &mirrored);
         }
         if n % 2 == 1 {
             for lane in 0..LANES {
-                target[lane] = self.lowest[lane] + 0.5 * self.extent[lane];
+                lower[n / 2][lane] = self.lowest[lane] + 0.5 * self.extent[lane];
             }
-            visit(n / 2, &target);
         }
     }
 }
@@ -130,19 +127,18 @@ impl<'a> Tabulated<'a> {
     }
 
     #[inline(always)]
-    fn for_each_cell(&self, n: usize, mut visit: impl FnMut(usize, &Row)) {
+    fn cell_means(&self, means: &mut [Row]) {
+        let n = means.len();
         let cells = n as f64;
         let mut below = [0.0; LANES];
-        for rank in 0..n {
+        for (rank, mean) in means.iter_mut().enumerate() {
             let integral = self.block.integral(&self.grid[rank + 1]);
             let uniform = (rank as f32 + 0.5) / n as f32;
-            let mut target = [0.0; LANES];
             for lane in 0..LANES {
                 let above = ((integral[lane] - below[lane]) * cells) as f32;
-                target[lane] = self.lowest[lane] + if self.on_axis[lane] { uniform } else { above };
+                mean[lane] = self.lowest[lane] + if self.on_axis[lane] { uniform } else { above };
             }
             below = integral;
-            visit(rank, &target);
         }
     }
 }

@@ -31,7 +31,7 @@ pub use error::{ConfigError, FormatError, TableError};
 pub use kernel::{Kernel, SpatialKernel, SpatialTap, Tap, TemporalKernel};
 pub use lattice::{Extent, Site};
 pub use metadata::{BoundEstimate, BoundRecord, KernelTaps, Metadata, RunRecord};
-pub use objective::{DimensionGroup, Objective, Slice, Slicing, Term};
+pub use objective::{DimensionGroup, Objective, Role, Slice, Slicing, Term};
 pub use optimizer::{Config, Ended, Optimizer, RunReport, StepReport, Until};
 pub use table::SampleTable;
 pub use target::{Projected, Target};

@@ -29,8 +29,23 @@ pub struct Term {
     pub target: Target,
     /// The dimensions that this term sees, as a renderer consumes them together.
     pub dims: Vec<usize>,
-    /// Share of the work: the number of times that this term touches a sample is proportional to it. Positive.
+    /// Share of the work: the number of slices that touch a sample is proportional to it, in the mean. Positive.
     pub weight: f64,
+    /// How its slices move the samples.
+    pub role: Role,
+}
+
+/// How the slices of a term move the samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Role {
+    /// All such terms together are descended.
+    #[default]
+    Descend,
+    /// After each step of the descent, samples move all the way to their targets along the slices of the term
+    /// (times [`crate::Config::balance`]): alternating projections rather than a compromise of weights. Meant for few
+    /// slices of large classes, whose small but systematic displacements a compromise would drown.
+    Balance,
 }
 
 /// A group of dimensions that a renderer consumes together, with its share of the work.
@@ -128,7 +143,7 @@ pub(crate) struct Draw {
     pub member: u32,
     pub level: f64,
     pub phase: f64,
-    /// Number within the step: names the subset's generator.
+    /// Term, and number within its step: names the subset's generator.
     pub name: u64,
 }
 
@@ -139,8 +154,8 @@ pub(crate) struct Order {
     members: Vec<u32>,
 }
 
-/// Share of the work that goes to the whole table, and to its frames, by default.
-const CONTROL_WEIGHT: f64 = 0.02;
+/// Share of the work that goes to the whole table, and to its frames, relative to the kernels.
+const BALANCE_WEIGHT: f64 = 0.02;
 
 impl Objective {
     /// Checks and plans the terms.
@@ -184,22 +199,23 @@ impl Objective {
     /// frame as keeps them unbiased.
     pub fn blue_noise(kernels: &[Kernel], form: Form, groups: &[DimensionGroup], extent: &Extent) -> Vec<Term> {
         let mut terms = Vec::new();
-        let mut add = |classes: Classes, share: f64| {
+        let mut add = |classes: Classes, role: Role, share: f64| {
             for group in groups {
                 terms.push(Term {
                     classes: classes.clone(),
                     target: Target::UniformCube,
                     dims: group.dims.clone(),
                     weight: share * group.weight,
+                    role,
                 });
             }
         };
         for kernel in kernels {
-            add(Classes::Lattice { kernel: kernel.clone(), form }, 1.0 / kernels.len() as f64);
+            add(Classes::Lattice { kernel: kernel.clone(), form }, Role::Descend, 1.0 / kernels.len() as f64);
         }
-        add(Classes::WholeTable, CONTROL_WEIGHT);
+        add(Classes::WholeTable, Role::Balance, BALANCE_WEIGHT);
         if extent.frames > 1 {
-            add(Classes::PerFrame, CONTROL_WEIGHT);
+            add(Classes::PerFrame, Role::Balance, BALANCE_WEIGHT);
         }
         terms
     }
@@ -235,20 +251,21 @@ impl Objective {
         (if lattice > 0.0 { lattice } else { all }) / self.extent.sites() as f64
     }
 
-    /// Mean number of slices that see a coordinate in a step, weighted by mass.
-    pub(crate) fn mean_hits(&self) -> f64 {
-        let hits = |term: &PlannedTerm| {
-            let mass = term.weights.as_ref().map_or(term.family.mean_size(), |weights| weights.iter().sum());
-            term.rate * term.slicer.per_subset() as f64 * mass * term.spec.dims.len() as f64
-        };
-        self.terms.iter().map(hits).sum::<f64>() / (self.extent.samples() * self.dims) as f64
-    }
-
-    /// The subsets of a step. `orders` keeps the permutations between steps.
-    pub(crate) fn draw_subsets(&self, seed: u64, step: u64, orders: &mut Vec<Order>, draws: &mut Vec<Draw>) {
+    /// The subsets that the terms of a role draw in a step. `orders` keeps the permutations between steps.
+    pub(crate) fn draw_subsets(
+        &self,
+        seed: u64,
+        step: u64,
+        role: Role,
+        orders: &mut Vec<Order>,
+        draws: &mut Vec<Draw>,
+    ) {
         orders.resize_with(self.terms.len(), Order::default);
         draws.clear();
         for (index, (term, order)) in self.terms.iter().zip(orders).enumerate() {
+            if term.spec.role != role {
+                continue;
+            }
             let begin = (step as f64 * term.rate) as u64;
             let end = ((step + 1) as f64 * term.rate) as u64;
             let mut generator = stream::generator(seed, Purpose::Strata, step, index as u64);
@@ -263,7 +280,7 @@ impl Objective {
                     // Jittered strata of the level against a rotated golden-ratio sequence of the phase.
                     level: ((i + generator.random::<f64>()) / strata).min(1.0 - f64::EPSILON),
                     phase: (turn + i * GOLDEN_RATIO).fract(),
-                    name: draws.len() as u64,
+                    name: (index as u64) << 32 | (visit - begin),
                 });
             }
         }
@@ -288,11 +305,11 @@ impl Objective {
         }));
     }
 
-    /// The slices that step `step` of an optimisation with this seed draws, one by one.
-    pub fn draw(&self, seed: u64, step: u64) -> Vec<Slice> {
+    /// The slices that the terms of a role draw in step `step` of an optimisation with this seed, one by one.
+    pub fn draw(&self, seed: u64, step: u64, role: Role) -> Vec<Slice> {
         let (mut orders, mut draws) = (Vec::new(), Vec::new());
         let (mut directions, mut cut) = (Directions::default(), Vec::new());
-        self.draw_subsets(seed, step, &mut orders, &mut draws);
+        self.draw_subsets(seed, step, role, &mut orders, &mut draws);
         let mut slices = Vec::new();
         for draw in &draws {
             self.draw_directions(seed, step, draw, &mut directions, &mut cut);

@@ -6,13 +6,13 @@ use std::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 
 use crate::class::Form;
-use crate::descent::{Descent, Walker};
+use crate::descent::{self, Descent, Schedule, Walker};
 use crate::domain::Domain;
 use crate::engine::{Engine, Pull};
 use crate::error::{ConfigError, TableError};
 use crate::kernel::{Kernel, SpatialKernel, TemporalKernel};
 use crate::lattice::Extent;
-use crate::objective::{DimensionGroup, Objective, Slicing, Term};
+use crate::objective::{DimensionGroup, Objective, Role, Slicing, Term};
 use crate::table::SampleTable;
 
 /// Everything that determines a table, but for the length of the run.
@@ -30,6 +30,8 @@ pub struct Config {
     pub slicing: Slicing,
     /// How steps move the samples.
     pub descent: Descent,
+    /// How far the terms in the role of [`Role::Balance`] move the samples towards their targets, over a run.
+    pub balance: Schedule,
     /// Names every random number: the same seed gives the same bits.
     pub seed: u64,
 }
@@ -52,6 +54,7 @@ impl Config {
             terms: Objective::blue_noise(&[kernel], Form::LevelSets, &groups, &extent),
             slicing: Slicing::default(),
             descent: Descent::default(),
+            balance: Schedule::constant(1.0),
             seed: 0,
         }
     }
@@ -133,7 +136,6 @@ pub struct Optimizer {
     walker: Walker,
     engine: Engine,
     pull: Pull,
-    mean_hits: f64,
     steps: u64,
 }
 
@@ -146,12 +148,12 @@ impl Optimizer {
         let objective =
             Objective::new(config.extent, config.dims, &config.domains, &config.terms, &config.slicing)?;
         config.descent.validate()?;
+        config.balance.validate()?;
         let points = crate::stream::uniforms(config.seed, config.extent.samples() * config.dims);
         let coordinates = points.len();
         let pull = Pull { sums: vec![0.0; coordinates], hits: vec![0.0; coordinates], ..Pull::default() };
         Ok(Self {
             walker: Walker::new(config.descent, coordinates),
-            mean_hits: objective.mean_hits(),
             engine: Engine::new(),
             steps: 0,
             pull,
@@ -195,20 +197,23 @@ impl Optimizer {
         SampleTable::trusted(self.config.extent, self.config.dims, self.points)
     }
 
-    /// Takes one step of size `rate` and returns the root mean square displacement before it, and the slices drawn.
+    /// Takes one step: descends with step size `rate`, then balances with `balance`. Returns the root mean square
+    /// displacement before it along the descended slices, and the number of slices drawn.
     ///
-    /// For schedules of your own; [`Optimizer::run`] follows that of the configuration.
-    pub fn step(&mut self, rate: f64) -> (f64, u64) {
-        let drawn = self.pull();
-        self.walker.step(rate, self.mean_hits, &self.config.domains, &mut self.points, &mut self.pull);
-        self.steps += 1;
-        drawn
-    }
-
-    fn pull(&mut self) -> (f64, u64) {
-        let Self { engine, objective, config, steps, points, pull, .. } = self;
-        engine.pull(objective, config.seed, *steps, points, pull);
-        ((pull.squares / pull.mass.max(f64::MIN_POSITIVE)).sqrt(), pull.slices)
+    /// For schedules of your own; [`Optimizer::run`] follows those of the configuration.
+    pub fn step(&mut self, rate: f64, balance: f64) -> (f64, u64) {
+        let Self { engine, objective, config, steps, points, pull, walker } = self;
+        let Config { domains, seed, .. } = config;
+        engine.pull(objective, (*seed, *steps, Role::Descend), points, pull);
+        let displacement = (pull.squares / pull.mass.max(f64::MIN_POSITIVE)).sqrt();
+        let slices = pull.slices;
+        walker.step(rate, domains, points, pull);
+        engine.pull(objective, (*seed, *steps, Role::Balance), points, pull);
+        if pull.slices > 0 {
+            descent::project(balance, domains, points, pull);
+        }
+        *steps += 1;
+        (displacement, slices + pull.slices)
     }
 
     /// Takes steps until `until`, or until `observe` breaks off. The table keeps what was reached.
@@ -234,8 +239,9 @@ impl Optimizer {
             elapsed: Duration::ZERO,
         };
         for step in 0..steps {
-            let rate = self.config.descent.rate().at(step as f64 / steps as f64);
-            let (displacement, slices) = self.step(rate);
+            let progress = step as f64 / steps as f64;
+            let rate = self.config.descent.rate().at(progress);
+            let (displacement, slices) = self.step(rate, self.config.balance.at(progress));
             report.steps += 1;
             report.slices += slices;
             let elapsed = begin.elapsed();
@@ -297,7 +303,7 @@ impl Optimizer {
         // The first step grows the buffers and does not count.
         for trial in 0.. {
             let start = Instant::now();
-            self.step(0.0);
+            self.step(0.0, 0.0);
             if trial > 0 {
                 best = best.min(start.elapsed().as_secs_f64());
                 if begin.elapsed() > ENOUGH {

@@ -38,7 +38,7 @@ pub(super) fn lower_half(widths: &[f64]) -> Vec<Piece> {
             let mass = edge / a / 2.0;
             let mut pieces = vec![power(edge, mass.min(0.5), 2.0)];
             if edge < 0.5 && mass < 0.5 {
-                let rise = Rise::Quartic([0.5 - mass, 0.0, 0.0, 0.0]);
+                let rise = Rise::Power { mass: 0.5 - mass, exponent: 1.0 };
                 pieces.push(Piece { start: edge, width: 0.5 - edge, below: mass, rise });
             }
             pieces

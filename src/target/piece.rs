@@ -50,7 +50,7 @@ impl Piece {
     /// Probability left of `t`.
     pub(super) fn cdf(&self, t: f64) -> f64 {
         match self.rise {
-            Rise::Power { mass, exponent } => mass * t.powf(exponent),
+            Rise::Power { mass, exponent } => self.below + mass * power(t, exponent),
             Rise::Quartic([a, b, c, d]) => self.below + t * (a + t * (b + t * (c + t * d))),
         }
     }
@@ -65,7 +65,7 @@ impl Piece {
             return 1.0;
         }
         match self.rise {
-            Rise::Power { mass, exponent } => (sought / mass).powf(1.0 / exponent).min(1.0),
+            Rise::Power { mass, exponent } => root(sought / mass, exponent).min(1.0),
             Rise::Quartic(coefficients) => solve(coefficients, sought, sought / (above - self.below)),
         }
     }
@@ -76,6 +76,12 @@ impl Piece {
     pub(super) fn mass_and_mean(&self, from: f64, to: f64) -> (f64, f64) {
         let step = to - from;
         match self.rise {
+            Rise::Power { mass, exponent: 1.0 } => (mass * step, self.position(from + 0.5 * step)),
+            Rise::Power { mass, exponent: 2.0 } => {
+                let sum = from + to;
+                let mean = if sum > 0.0 { (sum - from * to / sum) / 1.5 } else { 0.0 };
+                (mass * step * sum, self.position(mean))
+            }
             Rise::Power { mass, exponent } => {
                 // With r = from/to the mass is ∝ 1 − r^e and its mean is e/(e+1) · to · (1 − r^(e+1))/(1 − r^e).
                 let log = (-step / to).ln_1p();
@@ -102,6 +108,24 @@ impl Piece {
                 (held, self.position(from + step * (1.0 - passed).clamp(0.0, 1.0)))
             }
         }
+    }
+}
+
+/// `t^exponent`; one and two dimensions, whose exponents are 1 and 2, are where the time goes.
+fn power(t: f64, exponent: f64) -> f64 {
+    match exponent {
+        1.0 => t,
+        2.0 => t * t,
+        _ => t.powf(exponent),
+    }
+}
+
+/// Inverse of [`power`].
+fn root(share: f64, exponent: f64) -> f64 {
+    match exponent {
+        1.0 => share,
+        2.0 => share.sqrt(),
+        _ => share.powf(1.0 / exponent),
     }
 }
 
