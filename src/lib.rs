@@ -4,6 +4,7 @@ mod domain;
 mod error;
 mod kernel;
 mod lattice;
+pub mod metrics;
 mod stream;
 mod table;
 
