@@ -46,9 +46,8 @@ pub struct Integrands {
 /// Integrands of less variance are not drawn: an indicator has it at volumes below 0.1 % and above 99.9 %. Their
 /// ratios to white noise are those of a few lucky samples.
 ///
-/// The rare small half-spaces above it count: in the plane 8 % of the family have a volume
-/// below 1 % or above 99 %, and the part of the
-/// ratio that no filter of a few pixels can reduce.
+/// The rare small half-spaces above it count: in the plane 8 % of the family have a volume below 1 % or above
+/// 99 %, and theirs is the part of the ratio that no filter of a few pixels can reduce.
 const MIN_VARIANCE: f64 = 0.001;
 
 /// Bumps, balls and boxes constrain at most this many coordinates, drawn at random: in more, a body inside the

@@ -227,7 +227,7 @@ mod tests {
 
     #[test]
     fn patterns_peak_where_they_should() {
-        let sign = |n: usize| if n % 2 == 0 { 1.0 } else { -1.0 };
+        let sign = |n: usize| if n.is_multiple_of(2) { 1.0 } else { -1.0 };
         // A checkerboard that stands still: the Nyquist frequency, which is row and column 0 of a centred array.
         let checkerboard = image((4, 6, 8), |_, y, x| sign(x + y));
         assert_peaks(&checkerboard.xy, &[([0, 0], 48.0)]);

@@ -2,64 +2,11 @@
 
 use std::f64::consts::PI;
 
-/// Volume of `{x in [0, 1]^D : normal · x < offset}`, the CDF of a sum of independent uniforms.
-///
-/// D = 1 and D = 2 are written out: the projected density of the square is a trapezoid. Accuracy beyond: 1e-6 in
-/// the worst direction, 1e-11 in nearly all.
-pub(super) fn half_space(normal: &[f64], offset: f64) -> f64 {
-    // Mirroring the axes with a negative component makes all of them positive.
-    let negative: f64 = normal.iter().map(|n| n.min(0.0)).sum();
-    let length: f64 = normal.iter().map(|n| n.abs()).sum();
-    let t = offset - negative;
-    if t <= 0.0 {
-        return 0.0;
-    }
-    if t >= length {
-        return 1.0;
-    }
-    match *normal {
-        [_] => t / length,
-        [a, b] => {
-            let (small, large) = (a.abs().min(b.abs()), a.abs().max(b.abs()));
-            if t < small {
-                0.5 * t * t / (small * large)
-            } else if t <= large {
-                (t - 0.5 * small) / large
-            } else {
-                let rest = length - t;
-                1.0 - 0.5 * rest * rest / (small * large)
-            }
-        }
-        _ => sum_of_uniforms(normal, t / length),
-    }
-}
+use crate::target::Target;
 
-/// CDF at `share · Σ|widths|` of a sum of independent uniforms on `[0, |width_i|]`; `share` in 0..=1.
-///
-/// The Fourier series of the density, integrated term by term, with the sum's support as period:
-/// `F = share + Σ_k Π_i sinc(k |width_i| / Σ|widths|) · sin(2πk (share − ½)) / (πk)`. No term is large, so unlike
-/// the textbook's alternating sum of powers it loses no digits in high dimensions. For D ≥ 3 the terms fall like
-/// k^−4 or faster; vanishing widths slow that down, and the largest number of terms leaves an error below 1e-6.
-fn sum_of_uniforms(widths: &[f64], share: f64) -> f64 {
-    const MOST_TERMS: u32 = 100_000;
-    let length: f64 = widths.iter().map(|width| width.abs()).sum();
-    let mut cdf = share;
-    for k in (1..MOST_TERMS).map(f64::from) {
-        let (mut term, mut bound) = (1.0 / (PI * k), 1.0 / (PI * k));
-        for width in widths {
-            let phase = PI * k * width.abs() / length;
-            if phase > 1e-8 {
-                term *= phase.sin() / phase;
-                bound /= phase.max(1.0);
-            }
-        }
-        cdf += term * (2.0 * PI * k * (share - 0.5)).sin();
-        // The rest of a series that falls at least like k^-2 is at most its bound times k.
-        if bound * k < 1e-12 {
-            break;
-        }
-    }
-    cdf.clamp(0.0, 1.0)
+/// Volume of `{x in [0, 1]^D : normal · x < offset}`, the CDF of a sum of independent uniforms.
+pub(super) fn half_space(normal: &[f64], offset: f64) -> f64 {
+    Target::UniformCube.project(normal).cdf(offset)
 }
 
 /// Area of the disc around `centre` inside the unit square; any centre, `radius > 0`.
