@@ -230,7 +230,7 @@ impl Optimizer {
         let steps = self.plan(until)?;
         self.walker = Walker::new(self.config.descent, self.points.len());
         let begin = Instant::now();
-        let mut progress = Progress::default();
+        let mut plateau = Plateau::default();
         let mut report = RunReport {
             ended: Ended::Finished,
             steps: 0,
@@ -251,7 +251,7 @@ impl Optimizer {
                 break;
             }
             if let Until::Converged { improvement, window_steps, .. } = until
-                && progress.stalls(displacement * displacement, improvement, window_steps)
+                && plateau.reached(displacement * displacement, improvement, window_steps)
             {
                 report.ended = Ended::Converged;
                 break;
@@ -318,14 +318,14 @@ impl Optimizer {
 
 /// Mean squared displacement of this and the last window.
 #[derive(Default)]
-struct Progress {
+struct Plateau {
     last: Option<f64>,
     sum: f64,
     steps: u64,
 }
 
-impl Progress {
-    fn stalls(&mut self, squared: f64, improvement: f64, window: u64) -> bool {
+impl Plateau {
+    fn reached(&mut self, squared: f64, improvement: f64, window: u64) -> bool {
         self.sum += squared;
         self.steps += 1;
         if self.steps < window {

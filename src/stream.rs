@@ -22,6 +22,8 @@ pub(crate) enum Purpose {
     Frames,
     /// Slices that measure rather than optimise.
     Bound,
+    /// Parameters of one test integrand.
+    Integrands = 32,
 }
 
 /// The generator with this name.

@@ -1,5 +1,43 @@
-//! Measuring tables.
+//! What a table is worth, measured: filtered error, bias, uniformity and spectra.
+//!
+//! Every figure that can be one is a *ratio to white noise*: 1 means as good as independent random numbers in a
+//! table of the same shape, 0 means no error. The denominator is the analytic expectation, never a draw, so a
+//! ratio has no noise but that of the test integrands, which [`Estimate`] states.
+//!
+//! | question | answer |
+//! |---|---|
+//! | how large is the error that the eye sees? | [`FilteredError`] |
+//! | what is the objective worth, with exact distances? | [`bound()`] |
+//! | does the table as a whole, a frame, a pixel estimate integrals too high or too low? | [`Bias`] |
+//! | are the samples spread evenly over the square? | [`Histogram`], [`l2_star_discrepancy`] |
+//! | at which frequencies is the error? | [`Spectra`] |
+//!
+//! All but the histogram of a table measure one *dimension group* `dims`: the list of table dimensions that a
+//! renderer uses together, such as `[0, 1]` for a point on a light, in the order in which the integrand's
+//! coordinates are taken from them.
 
+mod bias;
 mod bound;
+mod discrepancy;
+mod error_image;
+mod families;
+mod fft;
+mod filtered_error;
+mod integrands;
+mod picture;
+mod ratios;
+mod spectrum;
+mod uniformity;
+mod volume;
 
+pub use bias::Bias;
 pub use bound::{Bound, bound};
+pub use discrepancy::l2_star_discrepancy;
+pub use error_image::error_image;
+pub use families::{Family, Integrands};
+pub use filtered_error::{FilteredError, filtered_error};
+pub use integrands::Integrand;
+pub use picture::{gray, write_gray_png, write_radial_csv};
+pub use ratios::{Estimate, Ratios};
+pub use spectrum::{RadialBin, Spectra};
+pub use uniformity::Histogram;
