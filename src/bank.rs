@@ -74,7 +74,8 @@ impl Block {
         let mut knots = vec![[[0.0; LANES]; 2]; INTERVALS + 1];
         for (lane, direction) in directions.iter().enumerate() {
             // The law belongs to the direction as it will be used, rounded.
-            let lengths: Vec<f64> = direction.iter().map(|&component| f64::from(component as f32).abs()).collect();
+            let lengths: Vec<f64> =
+                direction.iter().map(|&component| f64::from(component as f32).abs()).collect();
             let law = target.project(&lengths);
             for (knot, [integral, derivative]) in knots.iter_mut().enumerate() {
                 let place = knot as f64 / INTERVALS as f64;
@@ -93,7 +94,8 @@ impl Block {
         let [a, b, c, d] = boundary.weights;
         let mut integral = [0.0; LANES];
         for lane in 0..LANES {
-            integral[lane] = (a * here[0][lane] + b * here[1][lane]) + (c * next[0][lane] + d * next[1][lane]);
+            integral[lane] =
+                (a * here[0][lane] + b * here[1][lane]) + (c * next[0][lane] + d * next[1][lane]);
         }
         integral
     }
@@ -162,7 +164,8 @@ mod tests {
         for dims in [3, 4, 7, 16] {
             let bank = Bank::new(dims, &Target::UniformCube);
             let block = bank.block(3);
-            let dot = |a: usize, b: usize| block.theta.iter().map(|row| f64::from(row[a] * row[b])).sum::<f64>();
+            let dot =
+                |a: usize, b: usize| block.theta.iter().map(|row| f64::from(row[a] * row[b])).sum::<f64>();
             for a in 0..dims.min(LANES) {
                 for b in 0..dims.min(LANES) {
                     let expected = if a == b { 1.0 } else { 0.0 };
@@ -180,7 +183,8 @@ mod tests {
             for index in [0, 17] {
                 let block = bank.block(index);
                 for lane in [0, 5, 15] {
-                    let lengths: Vec<f64> = block.theta.iter().map(|row| f64::from(row[lane]).abs()).collect();
+                    let lengths: Vec<f64> =
+                        block.theta.iter().map(|row| f64::from(row[lane]).abs()).collect();
                     let law = Target::UniformCube.project(&lengths);
                     for n in [1, 2, 7, 36, 400, 4096] {
                         let grid = Boundary::grid(n);

@@ -109,7 +109,8 @@ impl Family {
             Shape::Blocks { len } => vec![*len],
             Shape::Lattice { taps, form: Form::Weighted, .. } => vec![taps.len() * self.extent.spp],
             Shape::Lattice { taps, .. } => {
-                let shell_ends = (1..=taps.len()).filter(|&n| n == taps.len() || taps[n].weight < taps[n - 1].weight);
+                let shell_ends =
+                    (1..=taps.len()).filter(|&n| n == taps.len() || taps[n].weight < taps[n - 1].weight);
                 shell_ends.map(|n| n * self.extent.spp).collect()
             }
         }
@@ -176,7 +177,8 @@ mod tests {
         let mut samples = Vec::new();
         for site in 0..EXTENT.sites() {
             let lands_here = |tap: &&Tap| {
-                EXTENT.site_index(EXTENT.wrapped(centre, (tap.dt.into(), tap.dy.into(), tap.dx.into()))) == site
+                EXTENT.site_index(EXTENT.wrapped(centre, (tap.dt.into(), tap.dy.into(), tap.dx.into())))
+                    == site
             };
             if taps.iter().find(lands_here).is_some_and(|tap| tap.weight > level) {
                 samples.extend((site * 3) as u32..(site * 3 + 3) as u32);
@@ -212,7 +214,8 @@ mod tests {
             samples.iter().for_each(|&sample| hits[sample as usize] += 1.0 / steps as f64);
         }
         for tap in taps {
-            let site = EXTENT.wrapped(Site { frame: 0, y: 0, x: 0 }, (tap.dt.into(), tap.dy.into(), tap.dx.into()));
+            let site =
+                EXTENT.wrapped(Site { frame: 0, y: 0, x: 0 }, (tap.dt.into(), tap.dy.into(), tap.dx.into()));
             let frequency = hits[EXTENT.site_index(site) * 3];
             assert!((frequency - tap.weight).abs() <= 1.0 / steps as f64, "{tap:?} {frequency}");
         }
@@ -233,7 +236,8 @@ mod tests {
 
     #[test]
     fn blocks_tile_the_table() {
-        for (classes, members) in [(Classes::WholeTable, 1), (Classes::PerFrame, 4), (Classes::PerPixel, 960)] {
+        for (classes, members) in [(Classes::WholeTable, 1), (Classes::PerFrame, 4), (Classes::PerPixel, 960)]
+        {
             let family = Family::new(&classes, EXTENT).unwrap();
             assert_eq!(family.members(), members);
             let (mut all, mut samples) = (Vec::new(), Vec::new());

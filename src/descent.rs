@@ -110,12 +110,12 @@ impl Descent {
 
     /// Gradient descent with momentum 0.9 and a decaying step.
     pub const fn sgd() -> Self {
-        Descent::Sgd { rate: Schedule::geometric(0.1, 0.002), momentum: 0.9 }
+        Descent::Sgd { rate: Schedule::geometric(0.2, 0.005), momentum: 0.9 }
     }
 
     /// Adam with a decaying step.
     pub const fn adam() -> Self {
-        Descent::Adam { rate: Schedule::geometric(0.02, 0.0004), beta1: 0.9, beta2: 0.99, epsilon: 1e-8 }
+        Descent::Adam { rate: Schedule::geometric(0.1, 0.004), beta1: 0.9, beta2: 0.99, epsilon: 1e-8 }
     }
 
     /// The step size's schedule.
@@ -190,8 +190,10 @@ impl Walker {
             return project(rate, domains, points, pull);
         }
         let task = TASK.next_multiple_of(domains.len());
-        let tasks =
-            points.par_chunks_mut(task).zip(pull.sums.par_chunks_mut(task)).zip(pull.hits.par_chunks_mut(task));
+        let tasks = points
+            .par_chunks_mut(task)
+            .zip(pull.sums.par_chunks_mut(task))
+            .zip(pull.hits.par_chunks_mut(task));
         let rate = rate as f32;
         match self.descent {
             Descent::Barycentric { .. } => {}
@@ -205,7 +207,8 @@ impl Walker {
                 });
             }
             Descent::Adam { beta1, beta2, epsilon, .. } => {
-                let [unbias1, unbias2] = [beta1, beta2].map(|beta| 1.0 / (1.0 - beta.powi(self.steps)) as f32);
+                let [unbias1, unbias2] =
+                    [beta1, beta2].map(|beta| 1.0 / (1.0 - beta.powi(self.steps)) as f32);
                 let [beta1, beta2, epsilon] = [beta1, beta2, epsilon].map(|value| value as f32);
                 let moments = self.first.par_chunks_mut(task).zip(self.second.par_chunks_mut(task));
                 tasks.zip(moments).for_each(|(((points, sums), hits), (first, second))| {
@@ -288,8 +291,7 @@ mod tests {
         // Kingma and Ba's Algorithm 1 by hand with beta1 = 0.5, beta2 = 0.75, epsilon = 0.01, rate = 0.1 and the
         // mean pulls 0.1 and 0.3. Step 1: m = .05, v = .0025, unbiased .1 and .01, x += .1 * .1 / .11.
         // Step 2: m = .175, v = .024375, unbiased .175/.75 and .024375/.4375.
-        let descent =
-            Descent::Adam { rate: Schedule::constant(0.1), beta1: 0.5, beta2: 0.75, epsilon: 0.01 };
+        let descent = Descent::Adam { rate: Schedule::constant(0.1), beta1: 0.5, beta2: 0.75, epsilon: 0.01 };
         let first = 0.5 + 0.1 * 0.1 / 0.11;
         let second = first + 0.1 * (0.175 / 0.75) / ((0.024375_f64 / 0.4375).sqrt() + 0.01);
         assert_close(&walk(descent, &[0.2, 0.6], 0.1), &[first, second]);
@@ -300,7 +302,9 @@ mod tests {
         for schedule in [Schedule::geometric(1.0, 0.02), Schedule::cosine(1.0, 0.02)] {
             assert!((schedule.at(0.0) - 1.0).abs() < 1e-12);
             assert!((schedule.at(1.0) - 0.02).abs() < 1e-12);
-            assert!((0..100).all(|i| schedule.at(f64::from(i) / 100.0) > schedule.at(f64::from(i + 1) / 100.0)));
+            assert!(
+                (0..100).all(|i| schedule.at(f64::from(i) / 100.0) > schedule.at(f64::from(i + 1) / 100.0))
+            );
         }
         assert!((Schedule::geometric(1.0, 0.01).at(0.5) - 0.1).abs() < 1e-12);
         assert!((Schedule::cosine(1.0, 0.0).at(1.0 / 3.0) - 0.75).abs() < 1e-12);
@@ -314,9 +318,13 @@ mod tests {
             other => panic!("{other:?}"),
         };
         assert_eq!(name(Descent::Barycentric { rate: Schedule::constant(0.0) }), "the first step size");
-        assert_eq!(name(Descent::Barycentric { rate: Schedule::geometric(1.0, f64::NAN) }), "the last step size");
+        assert_eq!(
+            name(Descent::Barycentric { rate: Schedule::geometric(1.0, f64::NAN) }),
+            "the last step size"
+        );
         assert_eq!(name(Descent::Sgd { rate: Schedule::constant(1.0), momentum: 1.0 }), "momentum");
-        let adam = |beta1, beta2, epsilon| Descent::Adam { rate: Schedule::constant(1.0), beta1, beta2, epsilon };
+        let adam =
+            |beta1, beta2, epsilon| Descent::Adam { rate: Schedule::constant(1.0), beta1, beta2, epsilon };
         assert_eq!(name(adam(-0.1, 0.9, 1e-8)), "beta1");
         assert_eq!(name(adam(0.9, 1.0, 1e-8)), "beta2");
         assert_eq!(name(adam(0.9, 0.99, 0.0)), "epsilon");

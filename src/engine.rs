@@ -159,7 +159,8 @@ impl Chunk {
                     LongLaw::Closed(term.spec.target.project(&direction))
                 }
             };
-            self.squares += long::transport(&gather, component, &law, term.weights.as_deref(), &mut self.long, moves);
+            self.squares +=
+                long::transport(&gather, component, &law, term.weights.as_deref(), &mut self.long, moves);
         }
     }
 
@@ -182,7 +183,8 @@ impl Chunk {
             };
             let (these, rest) = moves.split_at((end - begin) * dims.len());
             let samples = &self.samples[begin..end];
-            for (position, (&sample, along)) in samples.iter().zip(these.chunks_exact(dims.len())).enumerate() {
+            for (position, (&sample, along)) in samples.iter().zip(these.chunks_exact(dims.len())).enumerate()
+            {
                 let mass = term.weights.as_ref().map_or(1.0, |weights| weights[position] as f32);
                 for (&dim, along) in dims.iter().zip(along) {
                     let coordinate = sample as usize * objective.dims + dim;

@@ -134,7 +134,9 @@ fn match_targets(keys: &[[u32; LANES]], means: &[Row], targets: &mut [Row]) {
 #[inline(always)]
 fn displace(projections: &[Row], targets: &[Row], theta: &[Row], moves: &mut [f32]) -> f32 {
     let mut squares = [0.0; LANES];
-    for ((projection, target), moves) in projections.iter().zip(targets).zip(moves.chunks_exact_mut(theta.len())) {
+    for ((projection, target), moves) in
+        projections.iter().zip(targets).zip(moves.chunks_exact_mut(theta.len()))
+    {
         let mut displacement = [0.0; LANES];
         for lane in 0..LANES {
             displacement[lane] = target[lane] - projection[lane];

@@ -96,8 +96,8 @@ impl Trapezoid {
             }
         }
         if n % 2 == 1 {
-            for lane in 0..LANES {
-                lower[n / 2][lane] = self.lowest[lane] + 0.5 * self.extent[lane];
+            for (lane, middle) in lower[n / 2].iter_mut().enumerate() {
+                *middle = self.lowest[lane] + 0.5 * self.extent[lane];
             }
         }
     }

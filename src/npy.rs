@@ -102,6 +102,19 @@ impl SampleTable {
         Ok((table, metadata))
     }
 
+    /// Finds out before the work whether a table and its metadata could be saved at `path`. Leaves nothing behind.
+    ///
+    /// # Errors
+    /// As [`save_with`](Self::save_with).
+    pub fn check_writable(path: impl AsRef<Path>) -> Result<(), TableError> {
+        let path = path.as_ref();
+        metadata::check_name(path)?;
+        for file in [path, &Metadata::path_beside(path)] {
+            Pending::write(file, |_| Ok(())).map_err(|error| cannot_write(file, error))?;
+        }
+        Ok(())
+    }
+
     /// Writes header and values beside `path`.
     fn pending(&self, path: &Path) -> io::Result<Pending> {
         Pending::write(path, |out| {

@@ -62,7 +62,8 @@ impl DimensionGroup {
     /// that weight if there are more than two.
     pub fn pairs_and_whole(dims: usize) -> Vec<Self> {
         let all: Vec<usize> = (0..dims).collect();
-        let mut groups: Vec<Self> = all.chunks(2).map(|pair| Self { dims: pair.to_vec(), weight: 1.0 }).collect();
+        let mut groups: Vec<Self> =
+            all.chunks(2).map(|pair| Self { dims: pair.to_vec(), weight: 1.0 }).collect();
         if dims > 2 {
             groups.push(Self { dims: all, weight: 0.5 });
         }
@@ -155,7 +156,7 @@ pub(crate) struct Order {
 }
 
 /// Share of the work that goes to the whole table, and to its frames, relative to the kernels.
-const BALANCE_WEIGHT: f64 = 0.02;
+const BALANCE_WEIGHT: f64 = 0.03;
 
 impl Objective {
     /// Checks and plans the terms.
@@ -185,7 +186,8 @@ impl Objective {
         for (index, term) in terms.iter().enumerate() {
             planned.push(PlannedTerm::new(index, term, extent, dims, slicing)?);
         }
-        let slices = slicing.batch_slices.unwrap_or_else(|| (extent.sites() * slicing.directions).div_ceil(16));
+        let slices =
+            slicing.batch_slices.unwrap_or_else(|| (extent.sites() * slicing.directions).div_ceil(16));
         // Touches are shared by weight; a slice touches as many samples as its subset holds.
         let slices_of = |term: &PlannedTerm| term.spec.weight / term.family.mean_size();
         let total: f64 = planned.iter().map(slices_of).sum();
@@ -197,7 +199,12 @@ impl Objective {
 
     /// The terms for blue-noise error: each group under each kernel, and as much of the whole table and of each
     /// frame as keeps them unbiased.
-    pub fn blue_noise(kernels: &[Kernel], form: Form, groups: &[DimensionGroup], extent: &Extent) -> Vec<Term> {
+    pub fn blue_noise(
+        kernels: &[Kernel],
+        form: Form,
+        groups: &[DimensionGroup],
+        extent: &Extent,
+    ) -> Vec<Term> {
         let mut terms = Vec::new();
         let mut add = |classes: Classes, role: Role, share: f64| {
             for group in groups {
@@ -332,7 +339,11 @@ impl Objective {
     ///
     /// # Errors
     /// A wrong number of points, a point outside `[0, 1)`, a slice that does not fit the objective.
-    pub fn value_and_gradient(&self, points: &[f64], slices: &[Slice]) -> Result<(f64, Vec<f64>), ConfigError> {
+    pub fn value_and_gradient(
+        &self,
+        points: &[f64],
+        slices: &[Slice],
+    ) -> Result<(f64, Vec<f64>), ConfigError> {
         self.check_points(points)?;
         for (index, slice) in slices.iter().enumerate() {
             self.check_slice(index, slice)?;
@@ -393,7 +404,11 @@ impl Objective {
     pub(crate) fn check_points(&self, points: &[f64]) -> Result<(), ConfigError> {
         let expected = self.extent.samples() * self.dims;
         if points.len() != expected {
-            return Err(ConfigError::ValueCount { what: "the list of points", given: points.len(), expected });
+            return Err(ConfigError::ValueCount {
+                what: "the list of points",
+                given: points.len(),
+                expected,
+            });
         }
         match points.iter().position(|value| !(0.0..1.0).contains(value)) {
             Some(index) => Err(ConfigError::BadPoint { index, value: points[index] }),
@@ -413,7 +428,7 @@ impl Objective {
             if vector.len() != expected {
                 return Err(ConfigError::SliceShape { slice, what, given: vector.len(), expected });
             }
-            if let Some(&value) = vector.iter().find(|value| !(value.abs() <= 1e100)) {
+            if let Some(&value) = vector.iter().find(|value| !(-1e100..=1e100).contains(*value)) {
                 let expected = "finite values of reasonable size";
                 return Err(ConfigError::SliceValue { slice, what, value, expected });
             }
@@ -472,7 +487,11 @@ impl PlannedTerm {
     ) -> Result<Self, ConfigError> {
         if !(term.weight > 0.0 && term.weight.is_finite()) {
             let expected = "above 0 and finite";
-            return Err(ConfigError::OutOfRange { name: "the weight of a term", value: term.weight, expected });
+            return Err(ConfigError::OutOfRange {
+                name: "the weight of a term",
+                value: term.weight,
+                expected,
+            });
         }
         if term.dims.is_empty() {
             return Err(ConfigError::EmptyGroup { group: index });
@@ -496,7 +515,8 @@ impl PlannedTerm {
             let grid = if slicer.bank().is_some() { Boundary::grid(n) } else { Vec::new() };
             (n, SizePlan { network: Network::new(n), grid })
         };
-        let sizes = family.sizes().into_iter().filter(|&size| in_lanes && size <= LONGEST).map(plan).collect();
+        let sizes =
+            family.sizes().into_iter().filter(|&size| in_lanes && size <= LONGEST).map(plan).collect();
         Ok(Self { spec: term.clone(), family, slicer, sizes, weights, rate: 0.0 })
     }
 }

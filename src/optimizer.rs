@@ -245,7 +245,8 @@ impl Optimizer {
             report.steps += 1;
             report.slices += slices;
             let elapsed = begin.elapsed();
-            let seen = StepReport { step: step + 1, steps, slices: report.slices, displacement, rate, elapsed };
+            let seen =
+                StepReport { step: step + 1, steps, slices: report.slices, displacement, rate, elapsed };
             if observe(&seen).is_break() {
                 report.ended = Ended::Stopped;
                 break;
@@ -268,15 +269,11 @@ impl Optimizer {
         let out_of_range = |name, value, expected| Err(ConfigError::OutOfRange { name, value, expected });
         match until {
             Until::SlicesPerClass(slices) => Ok(steps(slices)),
-            Until::Epochs(epochs) => {
-                Ok(steps(epochs.saturating_mul(self.config.slicing.directions as u64)))
-            }
+            Until::Epochs(epochs) => Ok(steps(epochs.saturating_mul(self.config.slicing.directions as u64))),
             Until::Converged { improvement, .. } if !(0.0..1.0).contains(&improvement) => {
                 out_of_range("the least improvement", improvement, "in [0, 1)")
             }
-            Until::Converged { window_steps: 0, .. } => {
-                out_of_range("the window", 0.0, "of at least 1 step")
-            }
+            Until::Converged { window_steps: 0, .. } => out_of_range("the window", 0.0, "of at least 1 step"),
             Until::Converged { at_most, .. } => Ok(steps(at_most)),
             Until::Seconds(seconds) if !(seconds > 0.0 && seconds <= 1e9) => {
                 out_of_range("the number of seconds", seconds, "above 0, at most 1e9")

@@ -24,7 +24,12 @@ impl Workspace {
 
     /// Calls `visit(position, lower, upper)` for each projection, by increasing value, with the cell of the target's
     /// quantile function that it is matched with. Masses are `weights`, or equal.
-    fn match_cells(&mut self, projections: &[f64], weights: Option<&[f64]>, mut visit: impl FnMut(usize, f64, f64)) {
+    fn match_cells(
+        &mut self,
+        projections: &[f64],
+        weights: Option<&[f64]>,
+        mut visit: impl FnMut(usize, f64, f64),
+    ) {
         let order = self.sort(projections);
         let total = weights.map_or(projections.len() as f64, |weights| weights.iter().sum());
         let (mut below, mut lower) = (0.0, 0.0);

@@ -33,7 +33,12 @@ const CLUSTER: usize = 32;
 ///
 /// # Errors
 /// A table whose shape is not that of the objective; `slices` of 0.
-pub fn bound(objective: &Objective, table: &SampleTable, seed: u64, slices: usize) -> Result<Bound, ConfigError> {
+pub fn bound(
+    objective: &Objective,
+    table: &SampleTable,
+    seed: u64,
+    slices: usize,
+) -> Result<Bound, ConfigError> {
     if slices == 0 {
         return Err(ConfigError::OutOfRange { name: "slices", value: 0.0, expected: "of at least 1" });
     }
@@ -99,7 +104,8 @@ impl Moments {
     fn estimate(&self) -> BoundEstimate {
         let ratio = self.table / self.noise;
         // First-order propagation of the two means' errors.
-        let spread = self.table_variance - 2.0 * ratio * self.covariance + ratio * ratio * self.noise_variance;
+        let spread =
+            self.table_variance - 2.0 * ratio * self.covariance + ratio * ratio * self.noise_variance;
         BoundEstimate {
             value: self.table,
             standard_error: self.table_variance.sqrt(),

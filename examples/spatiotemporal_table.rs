@@ -1,0 +1,260 @@
+//! Optimises a spatio-temporal sample table and writes it as `.npy`, with its metadata in a `.json` beside it.
+//!
+//! `cargo run --release --example spatiotemporal_table -- --help`
+
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use clap::{Parser, ValueEnum};
+use fsot::{
+    BoundRecord, Config, Descent, DimensionGroup, Domain, Ended, Extent, Form, Kernel, KernelTaps, Metadata,
+    Objective, Optimizer, RunRecord, SampleTable, SpatialKernel, TemporalKernel, Until, metrics,
+};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+type Failure = Box<dyn std::error::Error + Send + Sync>;
+
+/// Optimises a table of random numbers so that a renderer's error is blue noise in space and time.
+#[derive(Parser)]
+struct Arguments {
+    /// Columns of a frame, in pixels.
+    #[arg(long, default_value_t = 64)]
+    width: usize,
+    /// Rows of a frame, in pixels.
+    #[arg(long, default_value_t = 64)]
+    height: usize,
+    /// Frames; the animation wraps.
+    #[arg(long, default_value_t = 10)]
+    frames: usize,
+    /// Samples per pixel.
+    #[arg(long, default_value_t = 1)]
+    spp: usize,
+    /// Dimensions per sample.
+    #[arg(long, default_value_t = 2)]
+    dims: usize,
+    /// Width of the spatial Gaussian exp(-r²/sigma²), in pixels.
+    #[arg(long, default_value_t = 2.1)]
+    sigma: f64,
+    /// none, gaussian:SIGMA, ema:ALPHA, box:N, binomial:N, perceptual:FPS or taps:a,b,… with the current frame first
+    /// [default: perceptual:60; none for a single frame].
+    #[arg(long, value_parser = parse_temporal)]
+    temporal: Option<TemporalKernel>,
+    /// Dimension groups with weights, as in "0,1:1;2,3:1;0-3:0.5" [default: consecutive pairs, and the whole at half
+    /// their weight].
+    #[arg(long, value_parser = parse_groups)]
+    groups: Option<Groups>,
+    /// Whether a dimension ends or wraps.
+    #[arg(long, value_enum, default_value_t = DomainName::Interval)]
+    domain: DomainName,
+    /// How steps move the samples.
+    #[arg(long, value_enum, default_value_t = DescentName::Barycentric)]
+    optimizer: DescentName,
+    /// Slices drawn per pixel and frame over the whole run.
+    #[arg(long, default_value_t = 512, conflicts_with = "seconds")]
+    slices_per_class: u64,
+    /// Time for the optimisation alone, instead of a number of slices.
+    #[arg(long)]
+    seconds: Option<f64>,
+    /// Do not measure the bound before and after.
+    #[arg(long)]
+    no_bound: bool,
+    /// Names every random number: the same seed gives the same bits.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Threads; 0 uses every core. The result does not depend on it.
+    #[arg(long, default_value_t = 0)]
+    threads: usize,
+    /// Where to write the table; its metadata goes beside it.
+    #[arg(long, default_value = "table.npy")]
+    out: PathBuf,
+    /// No progress bar and no summary.
+    #[arg(long)]
+    quiet: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum DomainName {
+    Interval,
+    Torus,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum DescentName {
+    Barycentric,
+    Adam,
+    Sgd,
+}
+
+#[derive(Clone)]
+struct Groups(Vec<DimensionGroup>);
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    match run(&arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let threads = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads).build()?;
+    threads.install(|| optimize(arguments))
+}
+
+fn optimize(arguments: &Arguments) -> Result<(), Failure> {
+    let mut optimizer = Optimizer::new(config(arguments))?;
+    // An unwritable path is found out before the work, not after it.
+    SampleTable::check_writable(&arguments.out)?;
+
+    // Enough slices for a standard error of about half a percent of the ratio.
+    const BOUND_SLICES: usize = 16_384;
+    let measure = |optimizer: &Optimizer| {
+        metrics::bound(optimizer.objective(), &optimizer.table(), optimizer.config().seed, BOUND_SLICES)
+    };
+    let before = if arguments.no_bound { None } else { Some(measure(&optimizer)?.total) };
+
+    let interrupted = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&interrupted);
+    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))?;
+    let bar = ProgressBar::new(0).with_style(ProgressStyle::with_template(
+        "{elapsed_precise} {wide_bar} {pos}/{len} steps, {per_sec}, {eta} left{msg}",
+    )?);
+    if arguments.quiet {
+        bar.set_draw_target(ProgressDrawTarget::hidden());
+    }
+    let until = match arguments.seconds {
+        Some(seconds) => Until::Seconds(seconds),
+        None => Until::SlicesPerClass(arguments.slices_per_class),
+    };
+    let report = optimizer.run(until, |step| {
+        bar.set_length(step.steps);
+        bar.set_position(step.step);
+        bar.set_message(format!(", displacement {:.4}", step.displacement));
+        if interrupted.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    })?;
+    bar.finish_and_clear();
+
+    let bound = match before {
+        Some(before) => Some(BoundRecord { before, after: measure(&optimizer)?.total }),
+        None => None,
+    };
+    let seconds = report.elapsed.as_secs_f64();
+    let table = optimizer.table();
+    let configuration = serde_json::to_value(optimizer.config())?;
+    let mut metadata = Metadata::new(&table, arguments.seed, configuration);
+    let objective = optimizer.objective();
+    metadata.kernels = (0..objective.terms().count())
+        .filter_map(|term| Some(KernelTaps { term, taps: objective.taps(term)?.to_vec() }))
+        .collect();
+    metadata.bound = bound;
+    metadata.run = RunRecord { slices_per_class: report.slices_per_class, steps: report.steps, seconds };
+    table.save_with(&arguments.out, &metadata)?;
+
+    if !arguments.quiet {
+        let stopped = if report.ended == Ended::Stopped { ", stopped early" } else { "" };
+        println!(
+            "{seconds:.2} s, {} slices ({:.2} million/s), --slices-per-class {}{stopped}",
+            report.slices,
+            report.slices as f64 / seconds / 1e6,
+            report.slices_per_class,
+        );
+        if let Some(BoundRecord { before, after }) = bound {
+            println!(
+                "bound {:.5} ± {:.5} → {:.5} ± {:.5}, {:.3} ± {:.3} of white noise",
+                before.value,
+                before.standard_error,
+                after.value,
+                after.standard_error,
+                after.ratio_to_white_noise,
+                after.ratio_standard_error,
+            );
+        }
+        println!("{}, {}", arguments.out.display(), Metadata::path_beside(&arguments.out).display());
+    }
+    Ok(())
+}
+
+fn config(arguments: &Arguments) -> Config {
+    let Arguments { width, height, frames, spp, dims, sigma, .. } = *arguments;
+    let extent = Extent { frames, height, width, spp };
+    let temporal = match &arguments.temporal {
+        Some(temporal) => temporal.clone(),
+        None if frames > 1 => TemporalKernel::Perceptual { fps: 60.0 },
+        None => TemporalKernel::None,
+    };
+    let kernel = Kernel::product(SpatialKernel::Gaussian { sigma_px: sigma }, temporal);
+    let groups = match &arguments.groups {
+        Some(Groups(groups)) => groups.clone(),
+        None => DimensionGroup::pairs_and_whole(dims),
+    };
+    let domain = match arguments.domain {
+        DomainName::Interval => Domain::Interval,
+        DomainName::Torus => Domain::Torus,
+    };
+    let descent = match arguments.optimizer {
+        DescentName::Barycentric => Descent::barycentric(),
+        DescentName::Adam => Descent::adam(),
+        DescentName::Sgd => Descent::sgd(),
+    };
+    Config {
+        domains: vec![domain; dims],
+        terms: Objective::blue_noise(&[kernel], Form::LevelSets, &groups, &extent),
+        descent,
+        seed: arguments.seed,
+        ..Config::new(extent, dims)
+    }
+}
+
+fn parse_temporal(text: &str) -> Result<TemporalKernel, String> {
+    let (name, value) = text.split_once(':').unwrap_or((text, ""));
+    let number = || value.parse::<f64>().map_err(|_| format!("'{value}' is no number: write {name}:NUMBER"));
+    let count = || value.parse::<usize>().map_err(|_| format!("'{value}' is no count: write {name}:FRAMES"));
+    match name {
+        "none" if value.is_empty() => Ok(TemporalKernel::None),
+        "gaussian" => Ok(TemporalKernel::Gaussian { sigma_frames: number()? }),
+        "ema" => Ok(TemporalKernel::Ema { alpha: number()? }),
+        "box" => Ok(TemporalKernel::Box { frames: count()? }),
+        "binomial" => Ok(TemporalKernel::Binomial { frames: count()? }),
+        "perceptual" => Ok(TemporalKernel::Perceptual { fps: number()? }),
+        "taps" => {
+            let taps = value.split(',').map(|tap| tap.trim().parse::<f64>());
+            let taps: Result<Vec<f64>, _> = taps.collect();
+            taps.map(TemporalKernel::Taps)
+                .map_err(|_| format!("'{value}' is no list of numbers: write taps:0.5,0.3,0.2"))
+        }
+        _ => Err(format!(
+            "'{text}' is no temporal kernel: write none, gaussian:SIGMA, ema:ALPHA, box:N, binomial:N, \
+             perceptual:FPS or taps:a,b,…"
+        )),
+    }
+}
+
+fn parse_groups(text: &str) -> Result<Groups, String> {
+    text.split(';').map(parse_group).collect::<Result<_, _>>().map(Groups)
+}
+
+/// A group such as `0,1`, `0-3:0.5` or `0,2-4:1`.
+fn parse_group(text: &str) -> Result<DimensionGroup, String> {
+    // Dimensions beyond any table would only make the list long.
+    const MOST: usize = 1 << 16;
+    let malformed = || format!("'{text}' is no dimension group: write for example 0,1:1 or 0-3:0.5");
+    let (list, weight) = text.split_once(':').unwrap_or((text, "1"));
+    let weight = weight.trim().parse().map_err(|_| malformed())?;
+    let mut dims = Vec::new();
+    for item in list.split(',') {
+        let (first, last) = item.split_once('-').unwrap_or((item, item));
+        let [first, last] =
+            [first, last].map(|dim| dim.trim().parse::<usize>().ok().filter(|&dim| dim < MOST));
+        match (first, last) {
+            (Some(first), Some(last)) if first <= last => dims.extend(first..=last),
+            _ => return Err(malformed()),
+        }
+    }
+    Ok(DimensionGroup { dims, weight })
+}
