@@ -53,7 +53,7 @@ struct Arguments {
     #[arg(long, value_enum, default_value_t = DescentName::Barycentric)]
     optimizer: DescentName,
     /// Slices drawn per pixel and frame over the whole run.
-    #[arg(long, default_value_t = 512, conflicts_with = "seconds")]
+    #[arg(long, default_value_t = 320, conflicts_with = "seconds")]
     slices_per_class: u64,
     /// Time for the optimisation alone, instead of a number of slices.
     #[arg(long)]

@@ -295,21 +295,16 @@ impl Optimizer {
     fn seconds_per_step(&mut self) -> f64 {
         const ENOUGH: Duration = Duration::from_millis(30);
         let steps = self.steps;
-        let mut best = f64::INFINITY;
-        let begin = Instant::now();
         // The first step grows the buffers and does not count.
-        for trial in 0.. {
-            let start = Instant::now();
+        self.step(0.0, 0.0);
+        let (begin, mut timed) = (Instant::now(), 0);
+        while begin.elapsed() < ENOUGH {
             self.step(0.0, 0.0);
-            if trial > 0 {
-                best = best.min(start.elapsed().as_secs_f64());
-                if begin.elapsed() > ENOUGH {
-                    break;
-                }
-            }
+            timed += 1;
         }
+        let mean = begin.elapsed().as_secs_f64() / f64::from(timed);
         self.steps = steps;
-        best.max(1e-9)
+        mean
     }
 }
 
