@@ -227,7 +227,8 @@ impl Optimizer {
         until: Until,
         mut observe: impl FnMut(&StepReport) -> ControlFlow<()>,
     ) -> Result<RunReport, ConfigError> {
-        let steps = self.plan(until)?;
+        let slices_per_class = self.plan(until)?;
+        let steps = (slices_per_class as f64 / self.objective.slices_per_class_and_step()).ceil() as u64;
         self.walker = Walker::new(self.config.descent, self.points.len());
         let begin = Instant::now();
         let mut plateau = Plateau::default();
@@ -235,7 +236,7 @@ impl Optimizer {
             ended: Ended::Finished,
             steps: 0,
             slices: 0,
-            slices_per_class: self.slices_per_class(steps),
+            slices_per_class,
             elapsed: Duration::ZERO,
         };
         for step in 0..steps {
@@ -262,33 +263,25 @@ impl Optimizer {
         Ok(report)
     }
 
-    /// Steps that a run takes at most.
+    /// Slices per pixel and frame that a run is planned for.
     fn plan(&mut self, until: Until) -> Result<u64, ConfigError> {
-        let per_step = self.objective.slices_per_class_and_step();
-        let steps = |slices: u64| (slices as f64 / per_step * (1.0 - 1e-12)).ceil() as u64;
         let out_of_range = |name, value, expected| Err(ConfigError::OutOfRange { name, value, expected });
         match until {
-            Until::SlicesPerClass(slices) => Ok(steps(slices)),
-            Until::Epochs(epochs) => Ok(steps(epochs.saturating_mul(self.config.slicing.directions as u64))),
+            Until::SlicesPerClass(slices) => Ok(slices),
+            Until::Epochs(epochs) => Ok(epochs.saturating_mul(self.config.slicing.directions as u64)),
             Until::Converged { improvement, .. } if !(0.0..1.0).contains(&improvement) => {
                 out_of_range("the least improvement", improvement, "in [0, 1)")
             }
             Until::Converged { window_steps: 0, .. } => out_of_range("the window", 0.0, "of at least 1 step"),
-            Until::Converged { at_most, .. } => Ok(steps(at_most)),
+            Until::Converged { at_most, .. } => Ok(at_most),
             Until::Seconds(seconds) if !(seconds > 0.0 && seconds <= 1e9) => {
                 out_of_range("the number of seconds", seconds, "above 0, at most 1e9")
             }
             Until::Seconds(seconds) => {
-                // A whole number of slices per class, so that the same run can be asked for by that number.
-                let slices = seconds / self.seconds_per_step() * per_step;
-                Ok(steps(slices.max(1.0) as u64))
+                let steps = seconds / self.seconds_per_step();
+                Ok((steps * self.objective.slices_per_class_and_step()).max(1.0) as u64)
             }
         }
-    }
-
-    /// Slices per class that plan this number of steps.
-    fn slices_per_class(&self, steps: u64) -> u64 {
-        (steps as f64 * self.objective.slices_per_class_and_step()).floor() as u64
     }
 
     /// Times a few steps that leave the table as it is.
