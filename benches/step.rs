@@ -1,0 +1,77 @@
+//! One step of the optimiser: time per sample that a slice selects, for subsets of a few to a thousand samples.
+//!
+//! `cargo bench --bench step`; the throughput is in selected samples, the sum of subset sizes over all slices.
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use fsot::{Classes, Config, Extent, Optimizer, SpatialKernel, TemporalKernel};
+
+/// A table's configuration and its name.
+fn cases() -> Vec<(&'static str, Config)> {
+    let still = |size, spp, dims| Config::new(Extent { frames: 1, height: size, width: size, spp }, dims);
+    vec![
+        ("64x64x1_2d", still(64, 1, 2)),
+        ("64x64x10_2d", Config::new(Extent { frames: 10, height: 64, width: 64, spp: 1 }, 2)),
+        ("64x64x1_2d_4spp", still(64, 4, 2)),
+        ("32x32x1_2d_16spp", still(32, 16, 2)),
+        ("64x64x1_4d", still(64, 1, 4)),
+        ("64x64x1_8d", still(64, 1, 8)),
+        ("256x256x1_2d", still(256, 1, 2)),
+    ]
+}
+
+fn step(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("step");
+    for (name, config) in cases() {
+        let mut optimizer = Optimizer::new(config).expect("the cases are valid");
+        // The mean subset: the sum of the taps' weights, times the samples per pixel.
+        let selected: f64 = optimizer
+            .objective()
+            .taps(0)
+            .expect("the first term has a kernel")
+            .iter()
+            .map(|tap| tap.weight)
+            .sum();
+        let (_, slices) = optimizer.step(1.0, 1.0);
+        let samples = slices as f64 * selected * optimizer.config().extent.spp as f64;
+        group.throughput(Throughput::Elements(samples as u64));
+        group.bench_function(BenchmarkId::from_parameter(name), |bencher| {
+            bencher.iter(|| optimizer.step(0.1, 0.1));
+        });
+        let table = optimizer.into_table();
+        assert!(table.values().iter().all(|value| (0.0..1.0).contains(value)), "{name} left the unit cube");
+    }
+    group.finish();
+}
+
+/// What the kernel's form and size cost: the mean subset grows with the square of sigma.
+fn sigma(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("sigma");
+    for sigma_px in [0.5, 1.0, 2.1, 4.0, 8.0] {
+        let mut config = Config::new(Extent { frames: 1, height: 64, width: 64, spp: 1 }, 2);
+        for term in &mut config.terms {
+            if let Classes::Lattice { kernel, .. } = &mut term.classes {
+                kernel.spatial = SpatialKernel::Gaussian { sigma_px };
+                kernel.temporal = TemporalKernel::None;
+            }
+        }
+        let mut optimizer = Optimizer::new(config).expect("the cases are valid");
+        let selected: f64 = optimizer
+            .objective()
+            .taps(0)
+            .expect("the first term has a kernel")
+            .iter()
+            .map(|tap| tap.weight)
+            .sum();
+        let (_, slices) = optimizer.step(1.0, 1.0);
+        group.throughput(Throughput::Elements((slices as f64 * selected) as u64));
+        group.bench_function(BenchmarkId::from_parameter(sigma_px), |bencher| {
+            bencher.iter(|| optimizer.step(0.1, 0.1));
+        });
+        let (displacement, _) = optimizer.step(0.1, 0.1);
+        assert!(displacement.is_finite() && displacement > 0.0);
+    }
+    group.finish();
+}
+
+criterion_group!(benches, step, sigma);
+criterion_main!(benches);
