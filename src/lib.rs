@@ -1,4 +1,80 @@
-//! Filtered sliced optimal transport.
+//! Filtered sliced optimal transport: tables of random numbers whose Monte Carlo error is blue noise in space and time.
+//!
+//! A renderer that takes its random numbers from such a table makes the errors of neighbouring pixels and frames cancel
+//! under the low-pass filter that follows: the eye, a denoiser, temporal antialiasing. The method is that of Salaün et
+//! al. 2022[^salaun] and its spatio-temporal extension by Korać et al. 2023[^korac], written from the mathematics.
+//!
+//! ```
+//! use std::ops::ControlFlow;
+//!
+//! use fsot::{Config, Extent, Optimizer, Site, Until, metrics};
+//!
+//! let extent = Extent { frames: 1, height: 32, width: 32, spp: 1 };
+//! let mut optimizer = Optimizer::new(Config::new(extent, 2))?;
+//! optimizer.run(Until::SlicesPerClass(64), |_progress| ControlFlow::Continue(()))?;
+//! let bound = metrics::bound(optimizer.objective(), &optimizer.table(), 0, 4096)?;
+//! assert!(bound.total.ratio_to_white_noise < 0.75);
+//!
+//! let table = optimizer.into_table();
+//! let random_numbers = table.sample(Site { frame: 0, y: 5, x: 7 }, 0);
+//! assert!(random_numbers.iter().all(|number| (0.0..1.0).contains(number)));
+//! # Ok::<(), fsot::ConfigError>(())
+//! ```
+//!
+//! `table.save("table.npy")` writes it for everybody else. You can stop here; the rest is what happens inside.
+//!
+//! # What it minimises
+//!
+//! Each pixel's *filter* (or class) `w_p` gives the samples around it weights. A level `z` turns the weights into a plain
+//! subset of samples; a direction `theta` turns the subset into numbers; their distance to the projected target is a
+//! problem of sorting. The mean over pixels, levels and directions,
+//!
+//! ```text
+//! L(X) = E_p ∫₀^{w_max} (|S_z(p)| / N) · E_theta W(X_{S_z(p)}·theta, mu·theta) dz,
+//! ```
+//!
+//! bounds the filtered error of every Lipschitz integrand from above. [`Optimizer`] descends it with a batch of random
+//! slices `(p, z, theta)` per step; [`metrics::bound()`] measures it with exact distances;
+//! [`Objective::value_and_gradient`] hands it to an optimiser of your own.
+//!
+//! | symbol | here | shape, unit |
+//! |---|---|---|
+//! | x | [`SampleTable`] | `[frame, y, x, sample, dim]`, `f32` in `[0, 1)`, C order |
+//! | c | [`Site`] and sample | lattice position of a sample |
+//! | w_p(c) | [`Kernel`], [`Classes`] | weight relative to the largest, in `[0, 1]` |
+//! | z | [`Slice::level`] | `[0, 1)` |
+//! | S_z(p) | subset | `{j : w_p(c_j) > z}` |
+//! | theta | [`Slice::direction`] | unit vector over the dimensions of a [`Term`] |
+//! | mu | [`Target`] | measure on `[0, 1]^D`; its law along theta is [`Projected`] |
+//! | N, n | samples of the table, of a subset | |
+//!
+//! # Where it deviates from the papers
+//!
+//! * A sample moves towards the exact *mean of its quantile cell*, not towards a random point of the target: the
+//!   gradient has no noise but that of the slices.
+//! * Tables are *unbiased* by default. The published objective pulls samples to the middle of the square, since a filter
+//!   often holds a single one; a few slices of the whole table and of whole frames after each step
+//!   ([`Role::Balance`]) remove this.
+//! * Levels reach the true maximum of the filter, also where a temporal kernel peaks in the past.
+//! * Domains end like intervals by default, since integrands do; [`Domain::Torus`] per dimension on request.
+//!
+//! # What it promises
+//!
+//! * The same seed gives the same bits at any thread count, on the AVX-512, AVX2 and baseline paths alike. Across
+//!   platforms sines, cosines and powers of the standard library may round differently in the last bit, and a run
+//!   amplifies that; tables then differ, their quality doesn't.
+//! * Values lie in `[0, 1)`; 1.0 never appears.
+//! * A step allocates nothing once its buffers have grown; memory stays below a dozen times the table.
+//! * Bad input is refused with a typed error ([`ConfigError`], [`TableError`]) before anything is computed or written.
+//!   The library prints nothing.
+//!
+//! What it is not: a renderer, a denoiser, a GPU library, or a source of random numbers for anything that needs
+//! statistical independence between pixels.
+//!
+//! [^salaun]: Salaün, Georgiev, Seidel, Singh 2022, "Scalable multi-class sampling via filtered sliced optimal transport",
+//!     ACM TOG 41(6), <https://doi.org/10.1145/3550454.3555484>.
+//! [^korac]: Korać, Salaün, Georgiev, Grittmann, Slusallek, Myszkowski, Singh 2023, "Perceptual error optimization for Monte
+//!     Carlo animation rendering", SIGGRAPH Asia, <https://doi.org/10.1145/3610548.3618146>.
 
 mod atomic;
 mod bank;
