@@ -1,14 +1,18 @@
 //! Filtered sliced optimal transport.
 
+mod atomic;
 mod domain;
 mod error;
 mod kernel;
 mod lattice;
+mod metadata;
+mod npy;
 mod stream;
 mod table;
 
 pub use domain::{BELOW_ONE, Domain};
-pub use error::{ConfigError, TableError};
+pub use error::{ConfigError, FormatError, TableError};
 pub use kernel::{Kernel, SpatialKernel, SpatialTap, Tap, TemporalKernel};
 pub use lattice::{Extent, Site};
+pub use metadata::{BoundEstimate, BoundRecord, KernelTaps, Metadata, RunRecord, Tap as RecordedTap};
 pub use table::SampleTable;

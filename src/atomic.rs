@@ -1,0 +1,181 @@
+//! Files that appear whole or not at all: written under a temporary name, renamed when complete.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::TempPath;
+
+/// A file that is complete on the disk, but still has a temporary name beside its target.
+///
+/// Dropping it removes it and leaves the target as it was.
+pub(crate) struct Pending {
+    file: TempPath,
+    target: PathBuf,
+}
+
+/// What a renamed file has replaced.
+pub(crate) struct Replaced {
+    target: PathBuf,
+    previous: Option<Vec<u8>>,
+}
+
+impl Pending {
+    /// Writes the contents beside `path` and waits until they have reached the disk.
+    pub(crate) fn write(
+        path: &Path,
+        fill: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>,
+    ) -> io::Result<Self> {
+        let target = target(path)?;
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".fsot-").suffix(".tmp");
+        #[cfg(unix)]
+        {
+            // Temporary files are private by default; a table is an ordinary file, and the umask decides.
+            use std::os::unix::fs::PermissionsExt;
+            builder.permissions(fs::Permissions::from_mode(0o666));
+        }
+        // In the same directory, because a rename does not cross file systems.
+        let mut file = builder.tempfile_in(directory(&target))?;
+        let mut writer = BufWriter::new(file.as_file_mut());
+        fill(&mut writer)?;
+        writer.flush()?;
+        drop(writer);
+        // Without this a power cut may keep the rename and lose the contents.
+        file.as_file().sync_all()?;
+        Ok(Self { file: file.into_temp_path(), target })
+    }
+
+    /// Takes the target's name.
+    pub(crate) fn commit(self) -> io::Result<()> {
+        self.file.persist(&self.target).map_err(|failed| failed.error)
+    }
+
+    /// Takes the target's name and remembers what was there; for small files.
+    pub(crate) fn replace(self) -> io::Result<Replaced> {
+        let previous = match fs::read(&self.target) {
+            Ok(bytes) => Some(bytes),
+            Err(absent) if absent.kind() == io::ErrorKind::NotFound => None,
+            Err(other) => return Err(other),
+        };
+        let target = self.target.clone();
+        self.commit()?;
+        Ok(Replaced { target, previous })
+    }
+}
+
+impl Replaced {
+    /// Puts back what was there, as far as possible: the caller is already reporting why.
+    pub(crate) fn undo(self) {
+        let _ = match self.previous {
+            None => fs::remove_file(&self.target),
+            Some(bytes) => {
+                Pending::write(&self.target, |out| out.write_all(&bytes)).and_then(Pending::commit)
+            }
+        };
+    }
+}
+
+/// The file that a rename may replace: `path`, or what it links to. Refuses directories and devices.
+fn target(path: &Path) -> io::Result<PathBuf> {
+    match fs::metadata(path) {
+        Ok(found) if found.is_dir() => {
+            Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a directory, not a file"))
+        }
+        // A rename onto /dev/null would succeed for root, and there would be no /dev/null.
+        Ok(found) if !found.is_file() => {
+            Err(io::Error::new(io::ErrorKind::InvalidInput, "it is a device or a pipe, not a file"))
+        }
+        Ok(_) if path.is_symlink() => fs::canonicalize(path),
+        Ok(_) => Ok(path.to_path_buf()),
+        Err(absent) if absent.kind() == io::ErrorKind::NotFound => {
+            let directory = directory(path);
+            if directory.is_dir() {
+                return Ok(path.to_path_buf());
+            }
+            let reason = format!("there is no directory {}", directory.display());
+            Err(io::Error::new(io::ErrorKind::NotFound, reason))
+        }
+        Err(other) => Err(other),
+    }
+}
+
+/// The directory of a file; the current one for a bare name.
+fn directory(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pending(path: &Path, text: &str) -> Pending {
+        Pending::write(path, |out| out.write_all(text.as_bytes())).unwrap()
+    }
+
+    fn names(directory: &Path) -> Vec<String> {
+        let entries = fs::read_dir(directory).unwrap();
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
+    }
+
+    #[test]
+    fn nothing_appears_before_the_commit_and_nothing_stays_without_one() {
+        let home = tempfile::tempdir().unwrap();
+        let path = home.path().join("a");
+        fs::write(&path, "old").unwrap();
+        drop(pending(&path, "new"));
+        assert_eq!(fs::read_to_string(&path).unwrap(), "old");
+        pending(&path, "new").commit().unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "new");
+        assert_eq!(names(home.path()), ["a"]);
+    }
+
+    #[test]
+    fn a_failed_fill_or_rename_leaves_nothing() {
+        let home = tempfile::tempdir().unwrap();
+        let path = home.path().join("a");
+        let full = |out: &mut BufWriter<&mut File>| {
+            out.write_all(b"half")?;
+            Err(io::Error::from(io::ErrorKind::StorageFull))
+        };
+        assert_eq!(Pending::write(&path, full).err().unwrap().kind(), io::ErrorKind::StorageFull);
+        assert!(names(home.path()).is_empty());
+
+        // The target turns into a directory between the check and the rename.
+        let late = pending(&path, "new");
+        fs::create_dir(&path).unwrap();
+        assert!(late.commit().is_err());
+        assert_eq!(names(home.path()), ["a"]);
+    }
+
+    #[test]
+    fn a_replacement_can_be_undone() {
+        let home = tempfile::tempdir().unwrap();
+        let path = home.path().join("a");
+        pending(&path, "first").replace().unwrap().undo();
+        assert!(names(home.path()).is_empty());
+        fs::write(&path, "old").unwrap();
+        let replaced = pending(&path, "new").replace().unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "new");
+        replaced.undo();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "old");
+        assert_eq!(names(home.path()), ["a"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_is_written_through_and_a_device_is_refused() {
+        let home = tempfile::tempdir().unwrap();
+        let (file, link) = (home.path().join("file"), home.path().join("link"));
+        fs::write(&file, "old").unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        pending(&link, "new").commit().unwrap();
+        assert!(link.is_symlink());
+        assert_eq!(fs::read_to_string(&file).unwrap(), "new");
+        let refused = Pending::write(Path::new("/dev/null"), |_| Ok(())).err().unwrap();
+        assert_eq!(refused.kind(), io::ErrorKind::InvalidInput);
+    }
+}

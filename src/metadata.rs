@@ -1,0 +1,245 @@
+//! What a table file does not say itself: how it was made and how good it is, in a `.json` beside it.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{FormatError, TableError};
+use crate::table::SampleTable;
+
+/// Kind and version of the file; the number grows when an old reader would misunderstand a new file.
+const FORMAT: &str = "fsot sample table 1";
+const AXES: [&str; 5] = ["frame", "y", "x", "sample", "dim"];
+const DTYPE: &str = "<f4";
+const ORDER: &str = "C";
+const RANGE: &str = "[0, 1)";
+
+/// Provenance of a table: everything needed to make it again, and what came of it.
+///
+/// [`Metadata::new`] fills in what follows from the table; the rest is the caller's. Fields that are not
+/// known are ignored when reading, so that notes may be added to the file by hand.
+///
+/// JSON has no NaN and no infinities: where an `f64` of this structure is not finite, the file says `"NaN"`,
+/// `"inf"` or `"-inf"`. Seeds are plain JSON integers of up to 64 bits; readers that keep all numbers as `f64`
+/// (JavaScript) round those above 2^53.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Metadata {
+    /// Kind and version of the file: `fsot sample table 1`.
+    pub format: String,
+    /// Version of this crate that made the table.
+    pub crate_version: String,
+    /// Names of the axes, slowest first: `frame`, `y`, `x`, `sample`, `dim`.
+    pub axes: [String; 5],
+    /// Lengths of the axes.
+    pub shape: [usize; 5],
+    /// Type of the values, as numpy names it: `<f4`, little-endian `f32`.
+    pub dtype: String,
+    /// Memory order: `C`, the last axis varies fastest.
+    pub order: String,
+    /// Range of the values: `[0, 1)`.
+    pub range: String,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// The whole configuration of the optimiser.
+    pub configuration: serde_json::Value,
+    /// Weights of the pixel and frame filters, one entry per term of the objective that has a kernel.
+    pub kernels: Vec<KernelTaps>,
+    /// The error bound before and after, if it was measured.
+    pub bound: Option<BoundRecord>,
+    /// How much work was done.
+    pub run: RunRecord,
+}
+
+/// The weights of a term's kernel.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct KernelTaps {
+    /// Position of the term in the objective.
+    pub term: usize,
+    /// Its weights; offsets that are not listed weigh nothing.
+    pub taps: Vec<Tap>,
+}
+
+/// One weight of a kernel.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Tap {
+    /// Offset in frames; negative is the past.
+    pub dt: i64,
+    /// Offset in rows.
+    pub dy: i64,
+    /// Offset in columns.
+    pub dx: i64,
+    /// Weight, relative to the largest of the kernel.
+    #[serde(with = "number")]
+    pub weight: f64,
+}
+
+/// The error bound of the table before and after its optimisation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BoundRecord {
+    /// Of the table that the optimisation started from.
+    pub before: BoundEstimate,
+    /// Of the table that was saved.
+    pub after: BoundEstimate,
+}
+
+/// A Monte Carlo estimate of the error bound.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BoundEstimate {
+    /// The bound.
+    #[serde(with = "number")]
+    pub value: f64,
+    /// Standard error of `value`.
+    #[serde(with = "number")]
+    pub standard_error: f64,
+    /// The bound, divided by that of white noise of the same shape.
+    #[serde(with = "number")]
+    pub ratio_to_white_noise: f64,
+    /// Standard error of `ratio_to_white_noise`.
+    #[serde(with = "number")]
+    pub ratio_standard_error: f64,
+}
+
+/// How much work made a table.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RunRecord {
+    /// Slices per class of filters and step.
+    pub slices_per_class: u64,
+    /// Steps of the descent.
+    pub steps: u64,
+    /// Wall-clock time in seconds.
+    #[serde(with = "number")]
+    pub seconds: f64,
+}
+
+impl Metadata {
+    /// Metadata of a table, without kernels, bound and run record: assign those that are known.
+    pub fn new(table: &SampleTable, seed: u64, configuration: serde_json::Value) -> Self {
+        Self {
+            format: FORMAT.into(),
+            crate_version: env!("CARGO_PKG_VERSION").into(),
+            axes: AXES.map(String::from),
+            shape: table.shape(),
+            dtype: DTYPE.into(),
+            order: ORDER.into(),
+            range: RANGE.into(),
+            seed,
+            configuration,
+            kernels: Vec::new(),
+            bound: None,
+            run: RunRecord::default(),
+        }
+    }
+
+    /// Where the metadata of a table lies: the same path with the extension `.json`.
+    pub fn path_beside(table_path: &Path) -> PathBuf {
+        table_path.with_extension("json")
+    }
+
+    /// Reads the metadata beside a table. The table itself is not read;
+    /// [`SampleTable::load_with`] reads both and checks that they agree.
+    ///
+    /// # Errors
+    /// The path of a table that cannot have metadata beside it ([`TableError::FileName`]), a file that cannot
+    /// be read ([`TableError::Io`]), damaged JSON with line and column or a format that this version does not
+    /// know ([`TableError::Format`]).
+    pub fn load(table_path: impl AsRef<Path>) -> Result<Self, TableError> {
+        let table_path = table_path.as_ref();
+        check_name(table_path)?;
+        let path = Self::path_beside(table_path);
+        let format = |problem| TableError::Format { path: path.clone(), problem };
+        let io = |source| TableError::Io { verb: "read", path: path.clone(), source };
+        // Before opening, because opening a pipe waits for its writer.
+        if !fs::metadata(&path).map_err(io)?.is_file() {
+            return Err(format(FormatError::NotAFile));
+        }
+        let bytes = fs::read(&path).map_err(io)?;
+        let metadata: Self = serde_json::from_slice(&bytes).map_err(|error| {
+            let reason = error.to_string();
+            format(FormatError::Json { line: error.line(), column: error.column(), reason })
+        })?;
+        metadata.check_format().map_err(format)?;
+        Ok(metadata)
+    }
+
+    /// Checks the fields that say how to read the table.
+    pub(crate) fn check_format(&self) -> Result<(), FormatError> {
+        let scalars = [
+            ("format", &self.format, FORMAT),
+            ("dtype", &self.dtype, DTYPE),
+            ("order", &self.order, ORDER),
+            ("range", &self.range, RANGE),
+        ];
+        let axes = self.axes.iter().zip(AXES).map(|(given, expected)| ("axes", given, expected));
+        for (field, given, expected) in scalars.into_iter().chain(axes) {
+            if given != expected {
+                return Err(FormatError::Field { field, given: given.clone(), expected: expected.into() });
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks that this is the metadata of a table of this shape.
+    pub(crate) fn check_shape(&self, table: [usize; 5]) -> Result<(), FormatError> {
+        let metadata = self.shape;
+        if metadata == table { Ok(()) } else { Err(FormatError::OtherTable { metadata, table }) }
+    }
+}
+
+/// Refuses paths beside which no metadata can lie: without a file name, or with the extension of metadata.
+pub(crate) fn check_name(table_path: &Path) -> Result<(), TableError> {
+    // In any case, because some file systems do not tell `.JSON` from `.json`.
+    let json = table_path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
+    if json || table_path.file_name().is_none() {
+        return Err(TableError::FileName { path: table_path.to_path_buf() });
+    }
+    Ok(())
+}
+
+/// `f64` as a JSON number, or as `"NaN"`, `"inf"`, `"-inf"`: a standard error that could not be estimated
+/// must neither stop a table from being saved nor turn into something else.
+mod number {
+    use std::fmt;
+
+    use serde::de::{Error, Unexpected, Visitor};
+    use serde::{Deserializer, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+        if value.is_finite() { serializer.serialize_f64(*value) } else { serializer.collect_str(value) }
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+        deserializer.deserialize_any(Number)
+    }
+
+    struct Number;
+
+    impl Visitor<'_> for Number {
+        type Value = f64;
+
+        fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+            formatter.write_str("a number, \"NaN\", \"inf\" or \"-inf\"")
+        }
+
+        fn visit_f64<E: Error>(self, value: f64) -> Result<f64, E> {
+            Ok(value)
+        }
+
+        fn visit_i64<E: Error>(self, value: i64) -> Result<f64, E> {
+            Ok(value as f64)
+        }
+
+        fn visit_u64<E: Error>(self, value: u64) -> Result<f64, E> {
+            Ok(value as f64)
+        }
+
+        fn visit_str<E: Error>(self, text: &str) -> Result<f64, E> {
+            match text {
+                "NaN" => Ok(f64::NAN),
+                "inf" => Ok(f64::INFINITY),
+                "-inf" => Ok(f64::NEG_INFINITY),
+                _ => Err(E::invalid_value(Unexpected::Str(text), &self)),
+            }
+        }
+    }
+}
