@@ -1,15 +1,19 @@
 //! Filtered sliced optimal transport.
 
 mod atomic;
+mod demand;
 mod domain;
 mod error;
 mod kernel;
 mod lattice;
 mod metadata;
 mod npy;
+pub mod render;
+pub mod sampler;
 mod stream;
 mod table;
 
+pub use demand::Demand;
 pub use domain::{BELOW_ONE, Domain};
 pub use error::{ConfigError, FormatError, TableError};
 pub use kernel::{Kernel, SpatialKernel, SpatialTap, Tap, TemporalKernel};
