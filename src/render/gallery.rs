@@ -72,13 +72,13 @@ fn soft_shadow() -> Scene {
     Scene {
         name: "soft_shadow",
         frames: 1,
-        camera: camera([0.0, 2.6, 7.5], [0.0, 0.9, 0.0]),
+        camera: camera([0.0, 3.2, 6.5], [0.0, 0.7, 0.0]),
         objects: vec![
-            floor(4.0, GREY),
-            sphere([-1.1, 1.0, 0.0], 0.8, GREY),
-            cuboid([0.7, 0.0, -0.9], [1.7, 1.6, 0.1], GREY),
+            floor(3.5, GREY),
+            sphere([-1.0, 1.2, 0.3], 0.8, GREY),
+            cuboid([0.6, 0.0, -0.9], [1.6, 1.6, 0.1], GREY),
         ],
-        lights: vec![lamp([-0.8, 4.5, 1.5], 1.6, 12.0)],
+        lights: vec![lamp([-1.2, 4.2, 1.0], 2.2, 6.0)],
         environment: 0.0,
         integrator: Integrator::Light,
     }
@@ -97,7 +97,7 @@ fn defocus() -> Scene {
             sphere([0.1, 0.8, 0.0], 0.8, GREY),
             sphere([1.9, 0.9, -3.2], 0.9, GREY),
         ],
-        lights: vec![lamp([0.0, 5.0, 1.0], 1.6, 16.0)],
+        lights: vec![lamp([-0.8, 5.0, 3.2], 1.6, 16.0)],
         environment: 0.0,
         integrator: Integrator::Light,
     }
@@ -122,10 +122,10 @@ fn glossy() -> Scene {
             sphere([1.8, 0.6, 0.6], 0.6, lobe(0.15)),
         ],
         lights: vec![
-            back(-2.2, 0.4, 4.0),
-            back(0.0, 1.2, 2.0),
-            back(2.2, 0.4, 4.0),
-            lamp([0.0, 4.5, 2.0], 1.5, 3.0),
+            back(-2.2, 0.4, 12.0),
+            back(0.0, 1.2, 6.0),
+            back(2.2, 0.4, 12.0),
+            lamp([0.0, 4.5, 2.0], 1.5, 9.0),
         ],
         environment: 0.0,
         integrator: Integrator::LightAndBsdf,
@@ -152,7 +152,7 @@ fn animated_soft_shadow() -> Scene {
     scene.name = "animated_soft_shadow";
     scene.frames = 30;
     // About one pixel a frame at 128 × 128.
-    scene.objects[1] = sphere([-1.9, 1.0, 0.6], 0.8, GREY);
+    scene.objects[1] = sphere([-1.9, 1.0, 0.8], 0.6, GREY);
     scene.objects[1].velocity = Vector3::new(0.05, 0.0, 0.0);
     scene
 }

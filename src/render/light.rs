@@ -24,7 +24,8 @@ impl Light {
     /// Whether an unblocked surface element there can receive any of its light: the element lies before the light
     /// and some corner rises above the element's plane.
     pub fn reaches(&self, point: Point3<f64>, normal: &Vector3<f64>) -> bool {
-        let before = (point - self.rectangle.corner).dot(&self.rectangle.normal()) > 0.0;
+        let along = self.rectangle.edge_u.cross(&self.rectangle.edge_v);
+        let before = (point - self.rectangle.corner).dot(&along) > 0.0;
         before && self.rectangle.corners().iter().any(|corner| (corner - point).dot(normal) > 0.0)
     }
 
