@@ -79,6 +79,7 @@
 mod atomic;
 mod bank;
 mod class;
+mod demand;
 mod descent;
 mod direction;
 mod domain;
@@ -95,12 +96,17 @@ mod network;
 mod npy;
 mod objective;
 mod optimizer;
+#[cfg(feature = "render")]
+pub mod render;
+#[cfg(feature = "render")]
+pub mod sampler;
 mod stream;
 mod table;
 mod target;
 mod transport;
 
 pub use class::{Classes, Form};
+pub use demand::Demand;
 pub use descent::{Descent, Schedule, Shape};
 pub use domain::{BELOW_ONE, Domain};
 pub use error::{ConfigError, FormatError, TableError};

@@ -40,7 +40,7 @@ pub(crate) fn generator(seed: u64, purpose: Purpose, step: u64, index: u64) -> X
 
 /// SplitMix64's bijective finaliser.
 #[inline]
-fn finalise(mut word: u64) -> u64 {
+pub(crate) fn finalise(mut word: u64) -> u64 {
     word = word.wrapping_add(0x9e37_79b9_7f4a_7c15);
     word = (word ^ (word >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     word = (word ^ (word >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

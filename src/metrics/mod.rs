@@ -24,6 +24,7 @@ mod families;
 mod fft;
 mod filtered_error;
 mod integrands;
+#[cfg(feature = "render")]
 mod picture;
 mod ratios;
 mod spectrum;
@@ -37,6 +38,7 @@ pub use error_image::error_image;
 pub use families::{Family, Integrands};
 pub use filtered_error::{FilteredError, filtered_error};
 pub use integrands::Integrand;
+#[cfg(feature = "render")]
 pub use picture::{gray, write_gray_png, write_radial_csv};
 pub use ratios::{Estimate, Ratios};
 pub use spectrum::{RadialBin, Spectra};
