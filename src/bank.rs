@@ -120,8 +120,8 @@ impl Boundary {
     }
 
     /// The `n + 1` boundaries of `n` equal cells.
-    pub(crate) fn grid(n: usize) -> Vec<Self> {
-        (0..=n).map(|i| Self::new(i as f64 / n as f64)).collect()
+    pub(crate) fn grid(n: usize) -> impl Iterator<Item = Self> {
+        (0..=n).map(move |i| Self::new(i as f64 / n as f64))
     }
 }
 
@@ -187,7 +187,7 @@ mod tests {
                         block.theta.iter().map(|row| f64::from(row[lane]).abs()).collect();
                     let law = Target::UniformCube.project(&lengths);
                     for n in [1, 2, 7, 36, 400, 4096] {
-                        let grid = Boundary::grid(n);
+                        let grid: Vec<Boundary> = Boundary::grid(n).collect();
                         for (cell, expected) in law.cell_means(n).enumerate() {
                             let integral = |at: usize| block.integral_of_lane(&grid[at], lane);
                             let mean = (integral(cell + 1) - integral(cell)) * n as f64;

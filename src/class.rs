@@ -1,5 +1,7 @@
 //! Families of filters. A *class* is one member of a family: the filter of one pixel, one frame, the whole table.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use crate::error::ConfigError;
@@ -38,61 +40,133 @@ pub enum Form {
     Weighted,
 }
 
-/// A family planned for one extent: taps are sorted, sizes known.
+/// A family planned for one extent: taps are sorted, sizes known, and where only a part of the table is demanded, the
+/// rest is left out.
 #[derive(Clone, Debug)]
 pub(crate) struct Family {
     extent: Extent,
     shape: Shape,
-    /// Samples that a random level selects, in the mean; the weighted form counts its whole support.
+    /// Classes that hold a demanded sample, where some don't.
+    visited: Option<Vec<u32>>,
+    /// Samples that a random level of a visited class selects, in the mean; the weighted form counts its support.
     mean_size: f64,
 }
 
 #[derive(Clone, Debug)]
 enum Shape {
-    /// Runs of consecutive samples of equal length.
-    Blocks { len: usize },
+    /// Runs of consecutive sites of equal length.
+    Blocks { sites: usize, wanted: Wanted },
     /// Taps by falling weight, with offsets made non-negative modulo the extent.
-    Lattice { taps: Vec<Tap>, offsets: Vec<[u32; 3]>, form: Form },
+    Lattice { taps: Vec<Tap>, offsets: Vec<[u32; 3]>, form: Form, wanted: Wanted },
+}
+
+/// Demanded sites: one flag each, or all of them.
+#[derive(Clone, Debug)]
+pub(crate) enum Wanted {
+    /// Every site.
+    All,
+    /// Those with a flag.
+    Some(Arc<[bool]>),
+}
+
+impl Wanted {
+    fn site(&self, site: usize) -> bool {
+        match self {
+            Wanted::All => true,
+            Wanted::Some(flags) => flags[site],
+        }
+    }
 }
 
 impl Family {
-    pub(crate) fn new(classes: &Classes, extent: Extent) -> Result<Self, ConfigError> {
-        let blocks = |len| (Shape::Blocks { len }, len as f64);
-        let (shape, mean_size) = match classes {
-            Classes::WholeTable => blocks(extent.samples()),
-            Classes::PerFrame => blocks(extent.samples() / extent.frames),
-            Classes::PerPixel => blocks(extent.spp),
-            Classes::Lattice { kernel, form } => {
-                let taps = kernel.taps(&extent)?;
-                let sites = match form {
-                    Form::LevelSets => taps.iter().map(|tap| tap.weight).sum(),
-                    Form::Weighted => taps.len() as f64,
-                };
+    pub(crate) fn new(classes: &Classes, extent: Extent, wanted: Wanted) -> Result<Self, ConfigError> {
+        let blocks = |sites| Ok(Shape::Blocks { sites, wanted: wanted.clone() });
+        let shape = match classes {
+            Classes::WholeTable => blocks(extent.sites()),
+            Classes::PerFrame => blocks(extent.height * extent.width),
+            Classes::PerPixel => blocks(1),
+            Classes::Lattice { kernel, form } => kernel.taps(&extent).map(|taps| {
                 let forward = |by: i32, len: usize| by.rem_euclid(len as i32) as u32;
                 let offsets = taps.iter().map(|tap| {
-                    [
-                        forward(tap.dt, extent.frames),
-                        forward(tap.dy, extent.height),
-                        forward(tap.dx, extent.width),
-                    ]
+                    let [t, y, x] = [extent.frames, extent.height, extent.width];
+                    [forward(tap.dt, t), forward(tap.dy, y), forward(tap.dx, x)]
                 });
-                let offsets = offsets.collect();
-                (Shape::Lattice { taps, offsets, form: *form }, sites * extent.spp as f64)
-            }
+                Shape::Lattice { offsets: offsets.collect(), taps, form: *form, wanted: wanted.clone() }
+            }),
+        }?;
+        let per_class = match &shape {
+            Shape::Blocks { sites, .. } => *sites as f64,
+            Shape::Lattice { taps, form: Form::Weighted, .. } => taps.len() as f64,
+            Shape::Lattice { taps, .. } => taps.iter().map(|tap| tap.weight).sum(),
         };
-        Ok(Self { extent, shape, mean_size })
+        let mut family = Self { extent, shape, visited: None, mean_size: per_class * extent.spp as f64 };
+        if let Wanted::Some(flags) = &wanted {
+            // Every wanted site is held as often as before, but by fewer classes.
+            let visited = family.holding(flags);
+            let share = flags.iter().filter(|&&flag| flag).count() as f64 / extent.sites() as f64;
+            family.mean_size *= share * family.members() as f64 / visited.len().max(1) as f64;
+            family.visited = Some(visited);
+        }
+        Ok(family)
+    }
+
+    /// The classes that hold one of these sites at all.
+    fn holding(&self, flags: &[bool]) -> Vec<u32> {
+        let mut holds = vec![false; self.members()];
+        for site in (0..flags.len()).filter(|&site| flags[site]) {
+            match &self.shape {
+                Shape::Blocks { sites, .. } => holds[site / sites] = true,
+                Shape::Lattice { taps, .. } => {
+                    let at = self.extent.site(site);
+                    for tap in taps {
+                        let back = (-i64::from(tap.dt), -i64::from(tap.dy), -i64::from(tap.dx));
+                        holds[self.extent.site_index(self.extent.wrapped(at, back))] = true;
+                    }
+                }
+            }
+        }
+        (0..holds.len() as u32).filter(|&member| holds[member as usize]).collect()
     }
 
     /// Number of classes.
     pub(crate) fn members(&self) -> usize {
         match &self.shape {
-            Shape::Blocks { len } => self.extent.samples() / len,
+            Shape::Blocks { sites, .. } => self.extent.sites() / sites,
             Shape::Lattice { .. } => self.extent.sites(),
+        }
+    }
+
+    /// Number of classes that hold a demanded sample.
+    pub(crate) fn visited(&self) -> usize {
+        self.visited.as_ref().map_or(self.members(), Vec::len)
+    }
+
+    /// The `index`th class that holds a demanded sample.
+    pub(crate) fn visited_member(&self, index: usize) -> usize {
+        self.visited.as_ref().map_or(index, |visited| visited[index] as usize)
+    }
+
+    /// Writes the classes that hold a demanded sample, in order.
+    pub(crate) fn list_visited(&self, members: &mut Vec<u32>) {
+        members.clear();
+        match &self.visited {
+            None => members.extend(0..self.members() as u32),
+            Some(visited) => members.extend_from_slice(visited),
         }
     }
 
     pub(crate) fn mean_size(&self) -> f64 {
         self.mean_size
+    }
+
+    /// Sum of the weights that a random level of a visited class selects, in the mean.
+    pub(crate) fn mean_mass(&self) -> f64 {
+        match &self.shape {
+            Shape::Lattice { taps, form: Form::Weighted, .. } => {
+                self.mean_size * taps.iter().map(|tap| tap.weight).sum::<f64>() / taps.len() as f64
+            }
+            _ => self.mean_size,
+        }
     }
 
     /// The taps of a lattice family.
@@ -103,57 +177,77 @@ impl Family {
         }
     }
 
-    /// Every size that a subset can have, increasing.
+    /// Sizes that subsets can have, increasing. Under a partial demand any size up to the last may occur.
     pub(crate) fn sizes(&self) -> Vec<usize> {
-        match &self.shape {
-            Shape::Blocks { len } => vec![*len],
-            Shape::Lattice { taps, form: Form::Weighted, .. } => vec![taps.len() * self.extent.spp],
+        let sites: Vec<usize> = match &self.shape {
+            Shape::Blocks { sites, .. } => vec![*sites],
+            Shape::Lattice { taps, form: Form::Weighted, .. } => vec![taps.len()],
             Shape::Lattice { taps, .. } => {
-                let shell_ends =
-                    (1..=taps.len()).filter(|&n| n == taps.len() || taps[n].weight < taps[n - 1].weight);
-                shell_ends.map(|n| n * self.extent.spp).collect()
+                let ends = 1..=taps.len();
+                ends.filter(|&n| n == taps.len() || taps[n].weight < taps[n - 1].weight).collect()
             }
-        }
+        };
+        sites.into_iter().map(|sites| sites * self.extent.spp).collect()
     }
 
-    /// Sites in the subset at this level.
-    fn sites_above(taps: &[Tap], form: Form, level: f64) -> usize {
-        match form {
-            Form::Weighted => taps.len(),
-            Form::LevelSets => taps.partition_point(|tap| tap.weight > level).max(1),
-        }
+    /// Whether a part of the table is left out.
+    pub(crate) fn is_partial(&self) -> bool {
+        let (Shape::Blocks { wanted, .. } | Shape::Lattice { wanted, .. }) = &self.shape;
+        matches!(wanted, Wanted::Some(_))
     }
 
-    /// Writes the numbers of the samples of class `member` whose weight exceeds `level` (in `[0, 1)`, relative to
-    /// the largest weight) by falling weight. Never empty.
-    pub(crate) fn select(&self, member: usize, level: f64, samples: &mut Vec<u32>) {
-        samples.clear();
+    /// Calls `visit(site, relative weight)` for the demanded sites of a class whose weight exceeds `level`, by falling
+    /// weight. The weighted form has its whole support at any level.
+    #[inline(always)]
+    fn for_each_site(&self, member: usize, level: f64, mut visit: impl FnMut(usize, f64)) {
         match &self.shape {
-            Shape::Blocks { len } => {
-                samples.extend((member * len) as u32..((member + 1) * len) as u32);
+            Shape::Blocks { sites, wanted } => {
+                (member * sites..(member + 1) * sites)
+                    .filter(|&site| wanted.site(site))
+                    .for_each(|site| visit(site, 1.0));
             }
-            Shape::Lattice { taps, offsets, form } => {
-                let Extent { frames, height, width, spp } = self.extent;
-                let [frames, height, width, spp] = [frames, height, width, spp].map(|len| len as u32);
+            Shape::Lattice { taps, offsets, form, wanted } => {
+                let Extent { frames, height, width, .. } = self.extent;
+                let [frames, height, width] = [frames, height, width].map(|len| len as u32);
                 let site = self.extent.site(member);
                 let [t, y, x] = [site.frame, site.y, site.x].map(|at| at as u32);
                 let wrap = |at: u32, len: u32| if at >= len { at - len } else { at };
-                for &[dt, dy, dx] in &offsets[..Self::sites_above(taps, *form, level)] {
+                let count = match form {
+                    Form::Weighted => taps.len(),
+                    Form::LevelSets => taps.partition_point(|tap| tap.weight > level),
+                };
+                for (&[dt, dy, dx], tap) in offsets[..count].iter().zip(taps) {
                     let row = wrap(t + dt, frames) * height + wrap(y + dy, height);
-                    let first = (row * width + wrap(x + dx, width)) * spp;
-                    samples.extend(first..first + spp);
+                    let site = (row * width + wrap(x + dx, width)) as usize;
+                    if wanted.site(site) {
+                        visit(site, tap.weight);
+                    }
                 }
             }
         }
     }
 
-    /// Weights of the samples that [`Family::select`] lists, `None` where all weigh 1.
-    pub(crate) fn weights(&self) -> Option<Vec<f64>> {
-        match &self.shape {
-            Shape::Lattice { taps, form: Form::Weighted, .. } => {
-                Some(taps.iter().flat_map(|tap| std::iter::repeat_n(tap.weight, self.extent.spp)).collect())
-            }
-            _ => None,
+    /// Writes the numbers of the demanded samples of class `member` whose weight exceeds `level` (in `[0, 1)`, relative
+    /// to the largest weight) by falling weight.
+    pub(crate) fn select(&self, member: usize, level: f64, samples: &mut Vec<u32>) {
+        samples.clear();
+        let spp = self.extent.spp as u32;
+        self.for_each_site(member, level, |site, _| {
+            samples.extend(site as u32 * spp..(site as u32 + 1) * spp)
+        });
+    }
+
+    /// Whether samples enter with their weights.
+    pub(crate) fn is_weighted(&self) -> bool {
+        matches!(&self.shape, Shape::Lattice { form: Form::Weighted, .. })
+    }
+
+    /// Writes the weights of the samples that [`Family::select`] lists; nothing where all weigh 1.
+    pub(crate) fn weigh(&self, member: usize, weights: &mut Vec<f64>) {
+        weights.clear();
+        if self.is_weighted() {
+            let spp = self.extent.spp;
+            self.for_each_site(member, 0.0, |_, weight| weights.extend(std::iter::repeat_n(weight, spp)));
         }
     }
 }
@@ -189,7 +283,7 @@ mod tests {
 
     #[test]
     fn level_sets_hold_the_samples_above_the_level() {
-        let family = Family::new(&lattice(Form::LevelSets), EXTENT).unwrap();
+        let family = Family::new(&lattice(Form::LevelSets), EXTENT, Wanted::All).unwrap();
         let taps = family.taps().unwrap();
         let mut samples = Vec::new();
         for (member, level) in [(0, 0.0), (17, 0.3), (959, 0.5), (500, 0.999), (240, 0.01)] {
@@ -204,7 +298,7 @@ mod tests {
     /// E_z |S_z| is the sum of the relative weights; a fine midpoint rule over z is exact to one step per tap.
     #[test]
     fn levels_select_each_tap_as_often_as_it_weighs() {
-        let family = Family::new(&lattice(Form::LevelSets), EXTENT).unwrap();
+        let family = Family::new(&lattice(Form::LevelSets), EXTENT, Wanted::All).unwrap();
         let taps = family.taps().unwrap();
         let steps = 20_000;
         let mut hits = vec![0.0; EXTENT.samples()];
@@ -225,9 +319,10 @@ mod tests {
 
     #[test]
     fn the_weighted_form_lists_the_support_with_its_weights() {
-        let family = Family::new(&lattice(Form::Weighted), EXTENT).unwrap();
-        let (mut samples, weights) = (Vec::new(), family.weights().unwrap());
+        let family = Family::new(&lattice(Form::Weighted), EXTENT, Wanted::All).unwrap();
+        let (mut samples, mut weights) = (Vec::new(), Vec::new());
         family.select(7, 0.9, &mut samples);
+        family.weigh(7, &mut weights);
         assert_eq!(samples.len(), weights.len());
         assert_eq!(samples.len() as f64, family.mean_size());
         assert_eq!(weights[0], 1.0);
@@ -238,7 +333,7 @@ mod tests {
     fn blocks_tile_the_table() {
         for (classes, members) in [(Classes::WholeTable, 1), (Classes::PerFrame, 4), (Classes::PerPixel, 960)]
         {
-            let family = Family::new(&classes, EXTENT).unwrap();
+            let family = Family::new(&classes, EXTENT, Wanted::All).unwrap();
             assert_eq!(family.members(), members);
             let (mut all, mut samples) = (Vec::new(), Vec::new());
             for member in 0..members {
@@ -247,5 +342,30 @@ mod tests {
             }
             assert!(all.iter().copied().eq(0..EXTENT.samples() as u32));
         }
+    }
+
+    #[test]
+    fn a_partial_demand_leaves_out_samples_and_the_classes_without_any() {
+        let flags: Vec<bool> =
+            (0..EXTENT.sites()).map(|site| EXTENT.site(site).frame == 1 && site % 12 < 3).collect();
+        let whole = Family::new(&lattice(Form::LevelSets), EXTENT, Wanted::All).unwrap();
+        let part =
+            Family::new(&lattice(Form::LevelSets), EXTENT, Wanted::Some(flags.clone().into())).unwrap();
+        let (mut all, mut some, mut visited) = (Vec::new(), Vec::new(), Vec::new());
+        part.list_visited(&mut visited);
+        let mut selected = 0;
+        for member in 0..EXTENT.sites() {
+            whole.select(member, 0.0, &mut all);
+            part.select(member, 0.0, &mut some);
+            all.retain(|&sample| flags[sample as usize / 3]);
+            assert_eq!(all, some);
+            assert_eq!(visited.contains(&(member as u32)), !some.is_empty());
+            selected += usize::from(!some.is_empty());
+        }
+        assert!(selected < EXTENT.sites() && selected == part.visited());
+        // Every demanded sample is selected as often as before, by fewer classes.
+        let wanted = flags.iter().filter(|&&flag| flag).count() as f64;
+        let expected = whole.mean_size() * wanted / part.visited() as f64;
+        assert!((part.mean_size() - expected).abs() < 1e-9 * expected);
     }
 }

@@ -7,6 +7,7 @@
 use pulp::{Arch, NullaryFnOnce};
 use rayon::prelude::*;
 
+use crate::bank::Boundary;
 use crate::direction::Directions;
 use crate::lanes::{self, Gather, LaneBuffers};
 use crate::law::{LaneLaw, Tabulated, Trapezoid};
@@ -47,8 +48,13 @@ struct Chunk {
     directions: Directions,
     cut: Vec<Option<f32>>,
     subset: Vec<u32>,
+    weights: Vec<f64>,
     samples: Vec<u32>,
     moves: Vec<f32>,
+    /// Masses of the samples of weighted terms.
+    masses: Vec<f32>,
+    /// Quantile cells of a subset whose size is not planned.
+    grid: Vec<Boundary>,
     lanes: LaneBuffers,
     long: LongBuffers,
     slices: u64,
@@ -106,12 +112,14 @@ impl NullaryFnOnce for Transport<'_> {
         let Self { objective, seed, step, points, draws, chunk } = self;
         chunk.samples.clear();
         chunk.moves.clear();
+        chunk.masses.clear();
         chunk.ends.clear();
         (chunk.slices, chunk.squares, chunk.mass) = (0, 0.0, 0.0);
         for draw in draws {
             let term = &objective.terms[draw.term as usize];
             objective.draw_directions(seed, step, draw, &mut chunk.directions, &mut chunk.cut);
             term.family.select(draw.member as usize, draw.level, &mut chunk.subset);
+            term.family.weigh(draw.member as usize, &mut chunk.weights);
             chunk.transport(objective, term, points);
             chunk.samples.extend_from_slice(&chunk.subset);
             chunk.ends.push(chunk.samples.len());
@@ -131,15 +139,23 @@ impl Chunk {
         let Directions { count, theta, block, on_axis } = &self.directions;
         let block = term.slicer.bank().map(|bank| bank.block(*block));
         self.slices += *count as u64;
-        let mass = match &term.weights {
-            None => n as f64,
-            Some(weights) => weights.iter().sum(),
-        };
-        self.mass += *count as f64 * mass;
-        if let Some(plan) = term.sizes.get(&n) {
+        let weights = term.family.is_weighted().then_some(self.weights.as_slice());
+        self.mass += *count as f64 * weights.map_or(n as f64, |weights| weights.iter().sum());
+        self.masses.extend(self.weights.iter().map(|&weight| weight as f32));
+        if n == 0 {
+            return; // none of the class's samples at this level is demanded
+        }
+        if let Some((&size, plan)) = term.sizes.range(n..).next() {
             let law = match block {
                 None => LaneLaw::Trapezoid(Trapezoid::new(theta)),
-                Some(block) => LaneLaw::Tabulated(Tabulated::new(&self.directions, block, &plan.grid)),
+                Some(block) => {
+                    if size != n {
+                        self.grid.clear();
+                        self.grid.extend(Boundary::grid(n));
+                    }
+                    let grid = if size == n { &plan.grid } else { &self.grid };
+                    LaneLaw::Tabulated(Tabulated::new(&self.directions, block, grid))
+                }
             };
             let squares = lanes::transport(&gather, theta, &law, &plan.network, &mut self.lanes, moves);
             self.squares += f64::from(squares);
@@ -159,8 +175,7 @@ impl Chunk {
                     LongLaw::Closed(term.spec.target.project(&direction))
                 }
             };
-            self.squares +=
-                long::transport(&gather, component, &law, term.weights.as_deref(), &mut self.long, moves);
+            self.squares += long::transport(&gather, component, &law, weights, &mut self.long, moves);
         }
     }
 
@@ -171,6 +186,7 @@ impl Chunk {
         pull.mass += self.mass;
         let mut begin = 0;
         let mut moves = self.moves.as_slice();
+        let mut masses = self.masses.iter();
         for (draw, &end) in draws.iter().zip(&self.ends) {
             let term = &objective.terms[draw.term as usize];
             let dims = &term.spec.dims;
@@ -183,9 +199,9 @@ impl Chunk {
             };
             let (these, rest) = moves.split_at((end - begin) * dims.len());
             let samples = &self.samples[begin..end];
-            for (position, (&sample, along)) in samples.iter().zip(these.chunks_exact(dims.len())).enumerate()
-            {
-                let mass = term.weights.as_ref().map_or(1.0, |weights| weights[position] as f32);
+            let weighted = term.family.is_weighted();
+            for (&sample, along) in samples.iter().zip(these.chunks_exact(dims.len())) {
+                let mass = if weighted { masses.next().copied().unwrap_or(0.0) } else { 1.0 };
                 for (&dim, along) in dims.iter().zip(along) {
                     let coordinate = sample as usize * objective.dims + dim;
                     pull.sums[coordinate] += factor * along;

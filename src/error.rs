@@ -73,6 +73,9 @@ pub enum ConfigError {
     /// Nothing to optimise.
     #[error("the objective has no term with a positive weight: give at least one")]
     NoTerms,
+    /// A demand that no term of the objective serves.
+    #[error("nothing is demanded: demand at least one pixel and a dimension that a term sees")]
+    NoDemand,
     /// The list of domains does not fit the table.
     #[error("{given} domains for {dims} dimensions: give one domain per dimension")]
     DomainCount {
@@ -153,6 +156,14 @@ pub enum TableError {
         given: usize,
         /// Values expected.
         expected: usize,
+    },
+    /// A table of another shape than the configuration's.
+    #[error("the table has shape {given:?}, the configuration {expected:?}: give both the same")]
+    Shape {
+        /// `[frames, height, width, spp, dims]` of the table.
+        given: [usize; 5],
+        /// The same of the configuration.
+        expected: [usize; 5],
     },
     /// A value lies outside `[0, 1)` or is not finite.
     #[error("the value at [frame {}, y {}, x {}, sample {}, dim {}] is {value}: values must lie in [0, 1)", at[0], at[1], at[2], at[3], at[4])]

@@ -59,7 +59,8 @@ impl Gather<'_> {
 /// Transports a subset along all lanes and writes, per sample and dimension of the group, the sum over lanes of
 /// `displacement * theta` to `moves`. Returns the sum of squared displacements.
 ///
-/// `theta` holds one row per dimension of the group; unused lanes are zero and move nothing.
+/// `theta` holds one row per dimension of the group; unused lanes are zero and move nothing. `network` sorts lists of
+/// the subset's length or longer.
 #[inline(always)]
 pub(crate) fn transport(
     subset: &Gather,
@@ -73,6 +74,8 @@ pub(crate) fn transport(
     let place_mask = n.next_power_of_two() - 1;
     project(subset, theta, &mut buffers.projections);
     encode(&buffers.projections, law, place_mask as u32, &mut buffers.keys);
+    // A network for longer lists sorts this one too, with the largest keys as filling at its end.
+    buffers.keys.resize(network.len(), [u32::MAX; LANES]);
     network.sort(&mut buffers.keys);
     // A power of two long, so that a masked position is inside without a check.
     buffers.targets.resize(place_mask + 1, [0.0; LANES]);

@@ -6,6 +6,7 @@ use crate::lanes::LANES;
 /// Algorithm 5.2.2M): the places to compare do not depend on the data, so that all lanes sort together.
 #[derive(Clone, Debug)]
 pub(crate) struct Network {
+    len: usize,
     exchanges: Vec<[u16; 2]>,
 }
 
@@ -30,7 +31,12 @@ impl Network {
             }
             block /= 2;
         }
-        Self { exchanges }
+        Self { len, exchanges }
+    }
+
+    /// Length of the lists that it sorts.
+    pub(crate) fn len(&self) -> usize {
+        self.len
     }
 
     /// Sorts every lane of `keys` by increasing value.

@@ -1,6 +1,6 @@
 //! What is optimised: weighted terms, and the value and gradient of their slices.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rand::RngExt;
 use rand::seq::SliceRandom;
@@ -8,7 +8,8 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::bank::Boundary;
-use crate::class::{Classes, Family, Form};
+use crate::class::{Classes, Family, Form, Wanted};
+use crate::demand::Demand;
 use crate::direction::{Directions, Slicer};
 use crate::domain::Domain;
 use crate::error::ConfigError;
@@ -122,10 +123,9 @@ pub(crate) struct PlannedTerm {
     pub spec: Term,
     pub family: Family,
     pub slicer: Slicer,
-    /// Networks and quantile cells of the subset sizes that are sorted in lanes.
+    /// Networks and quantile cells of the subset sizes that are sorted in lanes. A subset of another size takes the
+    /// next larger network.
     pub sizes: BTreeMap<usize, SizePlan>,
-    /// Weights of a subset's samples, in the weighted form.
-    pub weights: Option<Vec<f64>>,
     /// Subsets drawn per step; need not be whole.
     pub rate: f64,
 }
@@ -174,6 +174,58 @@ impl Objective {
         terms: &[Term],
         slicing: &Slicing,
     ) -> Result<Self, ConfigError> {
+        Self::planned(extent, dims, domains, terms, slicing, Wanted::All)
+    }
+
+    /// The same for the part of a table that a renderer will really consume.
+    ///
+    /// A demand of other width, height or frames is folded onto the table first, which tiles it. Samples of other sites
+    /// and dimensions outside the demanded groups belong to no class any more: a subset holds its demanded samples
+    /// alone, whose errors are the only ones that a filter sees; terms lose the dimensions that are not demanded, and
+    /// classes without a demanded sample are never drawn. The cost is in proportion to what is left.
+    ///
+    /// # Errors
+    /// As [`Objective::new`]; a demand for dimensions that the table does not have; a demand for nothing.
+    pub fn for_demand(
+        extent: Extent,
+        dims: usize,
+        domains: &[Domain],
+        terms: &[Term],
+        slicing: &Slicing,
+        demand: &Demand,
+    ) -> Result<Self, ConfigError> {
+        extent.validate(dims)?;
+        for (group, dimensions) in demand.groups().iter().enumerate() {
+            if let Some(&dimension) = dimensions.iter().find(|&&dimension| dimension >= dims) {
+                return Err(ConfigError::NoSuchDimension { group, dimension, dims });
+            }
+        }
+        let folded = demand.folded(&extent)?;
+        let mut terms = terms.to_vec();
+        for term in &mut terms {
+            // A group of the caller's that is empty or names no dimension of the table is still an error below.
+            if term.dims.iter().all(|&dim| dim < dims) && !term.dims.is_empty() {
+                term.dims.retain(|dim| demand.groups().iter().flatten().any(|demanded| demanded == dim));
+                if term.dims.is_empty() {
+                    term.weight = 0.0;
+                }
+            }
+        }
+        terms.retain(|term| term.weight != 0.0 || !term.dims.is_empty());
+        if terms.is_empty() || folded.count() == 0 {
+            return Err(ConfigError::NoDemand);
+        }
+        Self::planned(extent, dims, domains, &terms, slicing, Wanted::Some(folded.pixels().into()))
+    }
+
+    fn planned(
+        extent: Extent,
+        dims: usize,
+        domains: &[Domain],
+        terms: &[Term],
+        slicing: &Slicing,
+        wanted: Wanted,
+    ) -> Result<Self, ConfigError> {
         extent.validate(dims)?;
         if domains.len() != dims {
             return Err(ConfigError::DomainCount { given: domains.len(), dims });
@@ -184,7 +236,7 @@ impl Objective {
         slicing.validate()?;
         let mut planned = Vec::new();
         for (index, term) in terms.iter().enumerate() {
-            planned.push(PlannedTerm::new(index, term, extent, dims, slicing)?);
+            planned.push(PlannedTerm::new(index, term, extent, dims, slicing, wanted.clone())?);
         }
         let slices =
             slicing.batch_slices.unwrap_or_else(|| (extent.sites() * slicing.directions).div_ceil(16));
@@ -247,7 +299,7 @@ impl Objective {
         self.terms.get(term)?.family.taps()
     }
 
-    /// Slices of lattice terms that a step draws per pixel and frame, in the mean.
+    /// Slices of lattice terms that a step draws per visited pixel and frame, in the mean.
     pub(crate) fn slices_per_class_and_step(&self) -> f64 {
         let slices = |term: &PlannedTerm| match term.spec.classes {
             Classes::Lattice { .. } => term.rate * term.slicer.per_subset() as f64,
@@ -255,7 +307,7 @@ impl Objective {
         };
         let lattice: f64 = self.terms.iter().map(slices).sum();
         let all: f64 = self.terms.iter().map(|term| term.rate * term.slicer.per_subset() as f64).sum();
-        (if lattice > 0.0 { lattice } else { all }) / self.extent.sites() as f64
+        (if lattice > 0.0 { lattice } else { all }) / classes(&self.terms, self.extent) as f64
     }
 
     /// The subsets that the terms of a role draw in a step. `orders` keeps the permutations between steps.
@@ -277,9 +329,9 @@ impl Objective {
             let end = ((step + 1) as f64 * term.rate) as u64;
             let mut generator = stream::generator(seed, Purpose::Strata, step, index as u64);
             let turn: f64 = generator.random();
-            let members = term.family.members() as u64;
+            let members = term.family.visited() as u64;
             for visit in begin..end {
-                order.turn_to(seed, index as u64, visit / members, members as u32);
+                order.turn_to(seed, index as u64, visit / members, &term.family);
                 let (i, strata) = ((visit - begin) as f64, (end - begin) as f64);
                 draws.push(Draw {
                     term: index as u32,
@@ -375,12 +427,12 @@ impl Objective {
         self.project(points, slice, &samples, &mut projections);
         let law = term.spec.target.project(&slice.direction);
         let mut displacements = vec![0.0; samples.len()];
-        let weights = term.weights.as_deref();
-        let squared = Workspace::default().displacements(&law, &projections, weights, &mut displacements);
-        if let Some(weights) = weights {
-            displacements.iter_mut().zip(weights).for_each(|(displacement, weight)| *displacement *= weight);
-        }
-        let mass = weights.map_or(samples.len() as f64, |weights| weights.iter().sum());
+        let mut weights = Vec::new();
+        term.family.weigh(slice.member, &mut weights);
+        let given = term.family.is_weighted().then_some(weights.as_slice());
+        let squared = Workspace::default().displacements(&law, &projections, given, &mut displacements);
+        displacements.iter_mut().zip(&weights).for_each(|(displacement, weight)| *displacement *= weight);
+        let mass = given.map_or(samples.len() as f64, |weights| weights.iter().sum());
         Moved { cost: mass * squared, samples, displacements }
     }
 
@@ -451,11 +503,10 @@ struct Moved {
 const GOLDEN_RATIO: f64 = 0.618_033_988_749_894_8;
 
 impl Order {
-    fn turn_to(&mut self, seed: u64, term: u64, epoch: u64, members: u32) {
+    fn turn_to(&mut self, seed: u64, term: u64, epoch: u64, family: &Family) {
         if self.epoch != Some(epoch) {
             self.epoch = Some(epoch);
-            self.members.clear();
-            self.members.extend(0..members);
+            family.list_visited(&mut self.members);
             self.members.shuffle(&mut stream::generator(seed, Purpose::Order, epoch, term));
         }
     }
@@ -484,6 +535,7 @@ impl PlannedTerm {
         extent: Extent,
         dims: usize,
         slicing: &Slicing,
+        wanted: Wanted,
     ) -> Result<Self, ConfigError> {
         if !(term.weight > 0.0 && term.weight.is_finite()) {
             let expected = "above 0 and finite";
@@ -504,19 +556,35 @@ impl PlannedTerm {
                 return Err(ConfigError::RepeatedDimension { group: index, dimension });
             }
         }
-        let family = Family::new(&term.classes, extent)?;
-        let weights = family.weights();
-        let in_lanes = weights.is_none() && term.dims.len() > 1;
+        let family = Family::new(&term.classes, extent, wanted)?;
+        let sizes = family.sizes();
         // A subset that is not sorted in lanes gains nothing from sharing its directions.
-        let long = !family.sizes().iter().any(|&size| size <= LONGEST);
+        let long = sizes[0] > LONGEST;
         let per_subset = if long { 1 } else { slicing.directions };
         let slicer = Slicer::new(term.dims.len(), per_subset, slicing.axis_share, &term.target);
+        let in_lanes = !family.is_weighted() && term.dims.len() > 1;
+        let sizes: BTreeSet<usize> = match sizes.last() {
+            _ if !in_lanes => BTreeSet::new(),
+            Some(&largest) if family.is_partial() => partial_sizes(largest.min(LONGEST)).collect(),
+            _ => sizes.into_iter().filter(|&size| size <= LONGEST).collect(),
+        };
         let plan = |n: usize| {
-            let grid = if slicer.bank().is_some() { Boundary::grid(n) } else { Vec::new() };
+            let grid = if slicer.bank().is_some() { Boundary::grid(n).collect() } else { Vec::new() };
             (n, SizePlan { network: Network::new(n), grid })
         };
-        let sizes =
-            family.sizes().into_iter().filter(|&size| in_lanes && size <= LONGEST).map(plan).collect();
-        Ok(Self { spec: term.clone(), family, slicer, sizes, weights, rate: 0.0 })
+        let sizes = sizes.into_iter().map(plan).collect();
+        Ok(Self { spec: term.clone(), family, slicer, sizes, rate: 0.0 })
     }
+}
+
+/// Pixels and frames that the kernels visit; all of them if there is no kernel.
+fn classes(terms: &[PlannedTerm], extent: Extent) -> usize {
+    let visited = terms.iter().filter(|term| term.family.taps().is_some()).map(|term| term.family.visited());
+    visited.max().unwrap_or(extent.sites())
+}
+
+/// Sizes to plan for where any up to `largest` may occur: all of the small ones, then steps of a tenth.
+fn partial_sizes(largest: usize) -> impl Iterator<Item = usize> {
+    let next = |&size: &usize| (size < usize::MAX / 2).then(|| size + (size / 10).max(1));
+    std::iter::successors(Some(1), next).take_while(move |&size| size < largest).chain([largest])
 }

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 
 use crate::class::Form;
+use crate::demand::Demand;
 use crate::descent::{self, Descent, Schedule, Walker};
 use crate::domain::Domain;
 use crate::engine::{Engine, Pull};
@@ -147,6 +148,22 @@ impl Optimizer {
     pub fn new(config: Config) -> Result<Self, ConfigError> {
         let objective =
             Objective::new(config.extent, config.dims, &config.domains, &config.terms, &config.slicing)?;
+        Self::with(config, objective)
+    }
+
+    /// Starts from white noise and optimises only what a renderer will consume: see [`Objective::for_demand`].
+    ///
+    /// Everything else keeps its bits. The cost is in proportion to the demand.
+    ///
+    /// # Errors
+    /// Whatever [`Objective::for_demand`] refuses, and descent parameters outside their ranges.
+    pub fn for_demand(config: Config, demand: &Demand) -> Result<Self, ConfigError> {
+        let Config { extent, dims, domains, terms, slicing, .. } = &config;
+        let objective = Objective::for_demand(*extent, *dims, domains, terms, slicing, demand)?;
+        Self::with(config, objective)
+    }
+
+    fn with(config: Config, objective: Objective) -> Result<Self, ConfigError> {
         config.descent.validate()?;
         config.balance.validate()?;
         let points = crate::stream::uniforms(config.seed, config.extent.samples() * config.dims);
@@ -163,18 +180,18 @@ impl Optimizer {
         })
     }
 
-    /// Starts from a table, as made by an earlier run.
+    /// Goes on from this table instead of white noise.
     ///
     /// # Errors
-    /// As [`Optimizer::new`]; a table whose shape is not that of the configuration.
-    pub fn from_table(config: Config, table: SampleTable) -> Result<Self, TableError> {
-        let mut optimizer = Self::new(config)?;
-        let expected = optimizer.points.len();
-        if (table.extent(), table.dims()) != (optimizer.config.extent, optimizer.config.dims) {
-            return Err(TableError::Length { given: table.values().len(), expected });
+    /// A table whose shape is not that of the configuration.
+    pub fn start_from(&mut self, table: SampleTable) -> Result<(), TableError> {
+        let Extent { frames, height, width, spp } = self.config.extent;
+        let expected = [frames, height, width, spp, self.config.dims];
+        if table.shape() != expected {
+            return Err(TableError::Shape { given: table.shape(), expected });
         }
-        optimizer.points = table.into_values();
-        Ok(optimizer)
+        self.points = table.into_values();
+        Ok(())
     }
 
     /// The configuration.

@@ -141,16 +141,20 @@ fn distances(
     let cut: Vec<f64> = (0..dims).map(|_| generator.random()).collect();
     let mut levels: [usize; CLUSTER] = std::array::from_fn(|stratum| stratum);
     levels.shuffle(&mut generator);
-    let members = planned.family.members();
-    let weights = planned.weights.as_deref();
+    let mut weights = Vec::new();
     let mut slice = Slice { term, member: 0, level: 0.0, direction, cut };
     let (mut workspace, mut samples, mut projections) = Default::default();
     let workspace: &mut Workspace = &mut workspace;
     let (mut of_table, mut of_noise) = (0.0, 0.0);
     for stratum in levels {
-        slice.member = generator.random_range(0..members);
+        slice.member = planned.family.visited_member(generator.random_range(0..planned.family.visited()));
         slice.level = (stratum as f64 + generator.random::<f64>()) / CLUSTER as f64;
         planned.family.select(slice.member, slice.level, &mut samples);
+        if samples.is_empty() {
+            continue; // none of the class's samples at this level is demanded
+        }
+        planned.family.weigh(slice.member, &mut weights);
+        let weights = planned.family.is_weighted().then_some(weights.as_slice());
         let mass = weights.map_or(samples.len() as f64, |weights| weights.iter().sum());
         objective.project(points, &slice, &samples, &mut projections);
         of_table += mass * workspace.w1(&law, &projections, weights);
@@ -159,6 +163,6 @@ fn distances(
         }
         of_noise += mass * workspace.w1(&law, &projections, weights);
     }
-    let touched = CLUSTER as f64 * weights.map_or(planned.family.mean_size(), |weights| weights.iter().sum());
-    (of_table / touched, of_noise / touched)
+    let mass = CLUSTER as f64 * planned.family.mean_mass();
+    (of_table / mass, of_noise / mass)
 }
