@@ -2,8 +2,10 @@
 //!
 //! `cargo bench --bench step`; the throughput is in selected samples, the sum of subset sizes over all slices.
 
+use std::ops::ControlFlow;
+
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use fsot::{Classes, Config, Extent, Optimizer, SpatialKernel, TemporalKernel};
+use fsot::{Classes, Config, Demand, Ended, Extent, Optimizer, SpatialKernel, TemporalKernel, Until};
 
 /// A table's configuration and its name.
 fn cases() -> Vec<(&'static str, Config)> {
@@ -73,5 +75,30 @@ fn sigma(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, step, sigma);
+/// An optimisation where all of the pixels, a disc of a tenth of them, or every tenth of them are demanded.
+fn demand(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("demand");
+    let extent = Extent { frames: 1, height: 64, width: 64, spp: 1 };
+    let disc = |site: usize| {
+        let (y, x) = (site as f64 / 64.0 - 32.0, site as f64 % 64.0 - 32.0);
+        y * y + x * x < 409.6 / std::f64::consts::PI
+    };
+    let shapes: [(&str, &dyn Fn(usize) -> bool); 3] =
+        [("all", &|_| true), ("disc", &disc), ("every_tenth", &|site| site % 10 == 0)];
+    for (name, wanted) in shapes {
+        let pixels = (0..extent.sites()).map(wanted).collect();
+        let demand = Demand::new([1, 64, 64], pixels, vec![vec![0, 1]]).expect("the demand fits");
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| {
+                let mut optimizer =
+                    Optimizer::for_demand(Config::new(extent, 2), &demand).expect("the cases are valid");
+                let report = optimizer.run(Until::SlicesPerClass(128), |_| ControlFlow::Continue(()));
+                assert_eq!(report.expect("the run is valid").ended, Ended::Finished);
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, step, sigma, demand);
 criterion_main!(benches);

@@ -156,7 +156,8 @@ pub(crate) fn project(rate: f64, domains: &[Domain], points: &mut [f32], pull: &
         points.par_chunks_mut(task).zip(pull.sums.par_chunks_mut(task)).zip(pull.hits.par_chunks_mut(task));
     let rate = rate as f32;
     tasks.for_each(|((points, sums), hits)| {
-        move_points(domains, points, |i| rate * take_mean(&mut sums[i], &mut hits[i]));
+        let pulls = sums.iter_mut().zip(hits).map(|(sum, hits)| take_mean(sum, hits));
+        move_points(domains, points, pulls.map(|pull| rate * pull));
     });
 }
 
@@ -200,10 +201,12 @@ impl Walker {
             Descent::Sgd { momentum, .. } => {
                 let momentum = momentum as f32;
                 tasks.zip(self.first.par_chunks_mut(task)).for_each(|(((points, sums), hits), velocity)| {
-                    move_points(domains, points, |i| {
-                        velocity[i] = momentum * velocity[i] + take_mean(&mut sums[i], &mut hits[i]);
-                        rate * velocity[i]
+                    let pulls = sums.iter_mut().zip(hits).map(|(sum, hits)| take_mean(sum, hits));
+                    let motion = velocity.iter_mut().zip(pulls).map(|(velocity, pull)| {
+                        *velocity = momentum * *velocity + pull;
+                        rate * *velocity
                     });
+                    move_points(domains, points, motion);
                 });
             }
             Descent::Adam { beta1, beta2, epsilon, .. } => {
@@ -212,12 +215,14 @@ impl Walker {
                 let [beta1, beta2, epsilon] = [beta1, beta2, epsilon].map(|value| value as f32);
                 let moments = self.first.par_chunks_mut(task).zip(self.second.par_chunks_mut(task));
                 tasks.zip(moments).for_each(|(((points, sums), hits), (first, second))| {
-                    move_points(domains, points, |i| {
-                        let pulled = take_mean(&mut sums[i], &mut hits[i]);
-                        first[i] = beta1 * first[i] + (1.0 - beta1) * pulled;
-                        second[i] = beta2 * second[i] + (1.0 - beta2) * pulled * pulled;
-                        rate * (unbias1 * first[i]) / ((unbias2 * second[i]).sqrt() + epsilon)
+                    let pulls = sums.iter_mut().zip(hits).map(|(sum, hits)| take_mean(sum, hits));
+                    let moments = first.iter_mut().zip(second);
+                    let motion = moments.zip(pulls).map(|((first, second), pull)| {
+                        *first = beta1 * *first + (1.0 - beta1) * pull;
+                        *second = beta2 * *second + (1.0 - beta2) * pull * pull;
+                        rate * (unbias1 * *first) / ((unbias2 * *second).sqrt() + epsilon)
                     });
+                    move_points(domains, points, motion);
                 });
             }
         }
@@ -227,17 +232,23 @@ impl Walker {
 /// Mean pull on a coordinate, 0 if no slice held it; clears both.
 #[inline(always)]
 fn take_mean(sum: &mut f32, hits: &mut f32) -> f32 {
-    let mean = if *hits > 0.0 { *sum / *hits } else { 0.0 };
+    // Where there were no hits the sum is 0 as well, and no branch keeps the loop from being vectorised.
+    let mean = *sum / hits.max(f32::MIN_POSITIVE);
     (*sum, *hits) = (0.0, 0.0);
     mean
 }
 
-/// Adds `motion(i)` to the `i`th coordinate and brings it back into its domain.
+/// Adds the `i`th motion to the `i`th coordinate and brings it back into its domain.
 #[inline(always)]
-fn move_points(domains: &[Domain], points: &mut [f32], mut motion: impl FnMut(usize) -> f32) {
-    for (sample, point) in points.chunks_exact_mut(domains.len()).enumerate() {
-        for (dim, (coordinate, domain)) in point.iter_mut().zip(domains).enumerate() {
-            *coordinate = domain.admit(*coordinate + motion(sample * domains.len() + dim));
+fn move_points(domains: &[Domain], points: &mut [f32], motion: impl Iterator<Item = f32>) {
+    if domains.iter().all(|&domain| domain == Domain::Interval) {
+        // The common case by itself, so that it is vectorised.
+        for (coordinate, motion) in points.iter_mut().zip(motion) {
+            *coordinate = Domain::Interval.admit(*coordinate + motion);
+        }
+    } else {
+        for ((coordinate, domain), motion) in points.iter_mut().zip(domains.iter().cycle()).zip(motion) {
+            *coordinate = domain.admit(*coordinate + motion);
         }
     }
 }

@@ -15,9 +15,9 @@ use crate::long::{self, LongBuffers, LongLaw};
 use crate::objective::{Draw, Objective, Order, PlannedTerm, Role};
 
 /// Subsets per chunk: large enough to pay for handing it to a thread.
-const CHUNK: usize = 32;
+const CHUNK: usize = 16;
 /// Chunks in flight: bounds the memory of a large step.
-const IN_FLIGHT: usize = 64;
+const IN_FLIGHT: usize = 128;
 
 /// Sum of displacements along the directions of the slices, and how many slices there were, per coordinate.
 #[derive(Clone, Debug, Default)]

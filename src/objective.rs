@@ -238,8 +238,8 @@ impl Objective {
         for (index, term) in terms.iter().enumerate() {
             planned.push(PlannedTerm::new(index, term, extent, dims, slicing, wanted.clone())?);
         }
-        let slices =
-            slicing.batch_slices.unwrap_or_else(|| (extent.sites() * slicing.directions).div_ceil(16));
+        let classes = classes(&planned, extent);
+        let slices = slicing.batch_slices.unwrap_or_else(|| (classes * slicing.directions).div_ceil(16));
         // Touches are shared by weight; a slice touches as many samples as its subset holds.
         let slices_of = |term: &PlannedTerm| term.spec.weight / term.family.mean_size();
         let total: f64 = planned.iter().map(slices_of).sum();
@@ -562,7 +562,7 @@ impl PlannedTerm {
         let long = sizes[0] > LONGEST;
         let per_subset = if long { 1 } else { slicing.directions };
         let slicer = Slicer::new(term.dims.len(), per_subset, slicing.axis_share, &term.target);
-        let in_lanes = !family.is_weighted() && term.dims.len() > 1;
+        let in_lanes = !family.is_weighted() && slicer.per_subset() > 1;
         let sizes: BTreeSet<usize> = match sizes.last() {
             _ if !in_lanes => BTreeSet::new(),
             Some(&largest) if family.is_partial() => partial_sizes(largest.min(LONGEST)).collect(),
