@@ -2,7 +2,9 @@
 //!
 //! Shared with the engine are the slices and the law of a projection, which has tests of its own.
 
-use fsot::{Classes, Config, Domain, Extent, Form, Role, Slice, SpatialKernel, Target, TemporalKernel, Term};
+use fsot::{
+    Classes, Config, Domain, Extent, Form, Role, Site, Slice, SpatialKernel, Target, TemporalKernel, Term,
+};
 
 /// The first five taps of the perceptual kernel at 60 frames per second; the sixth is negative. From the published
 /// table of Korać et al. 2023.
@@ -67,33 +69,39 @@ pub fn moved(config: &Config, points: &[f32], pull: &Pull, rate: f64) -> Vec<f64
 
 /// Samples and masses of a slice's subset.
 fn select(extent: &Extent, term: &Term, slice: &Slice) -> Vec<(usize, f64)> {
-    let mut subset = Vec::new();
-    for sample in 0..extent.samples() {
-        let (site, centre) = (extent.site(sample / extent.spp), extent.site(slice.member));
-        let mass = match &term.classes {
-            Classes::WholeTable => 1.0,
-            Classes::PerFrame => f64::from(u8::from(site.frame == slice.member)),
-            Classes::PerPixel => f64::from(u8::from(site == centre)),
-            Classes::Lattice { kernel, form } => {
-                let temporal = in_time(&kernel.temporal, centre.frame, site.frame, extent.frames);
-                let SpatialKernel::Gaussian { sigma_px } = kernel.spatial else { panic!("no other kernel") };
-                let spatial = in_space(sigma_px, centre.y.abs_diff(site.y), extent.height)
-                    * in_space(sigma_px, centre.x.abs_diff(site.x), extent.width);
-                let weight = temporal * spatial;
-                match form {
-                    _ if weight < kernel.truncation => 0.0,
-                    Form::LevelSets if weight > slice.level => 1.0,
-                    Form::LevelSets => 0.0,
-                    Form::Weighted => weight,
-                }
-            }
-            other => panic!("{other:?} has no twin"),
-        };
-        if mass > 0.0 {
-            subset.push((sample, mass));
+    let weight = weights(extent, term, slice.member);
+    let mass = |sample: usize| {
+        let weight = weight(extent.site(sample / extent.spp));
+        match &term.classes {
+            Classes::Lattice { kernel, .. } if weight < kernel.truncation => 0.0,
+            Classes::Lattice { form: Form::Weighted, .. } => weight,
+            _ => f64::from(u8::from(weight > slice.level)),
         }
-    }
-    subset
+    };
+    (0..extent.samples()).map(|sample| (sample, mass(sample))).filter(|&(_, mass)| mass > 0.0).collect()
+}
+
+/// The filter of a class: weights of sites, relative to the largest.
+fn weights(extent: &Extent, term: &Term, member: usize) -> impl Fn(Site) -> f64 {
+    let (t, y, x) = match &term.classes {
+        Classes::WholeTable => (vec![1.0; extent.frames], vec![1.0; extent.height], vec![1.0; extent.width]),
+        Classes::PerFrame => {
+            let frame = (0..extent.frames).map(|frame| f64::from(u8::from(frame == member)));
+            (frame.collect(), vec![1.0; extent.height], vec![1.0; extent.width])
+        }
+        Classes::Lattice { kernel, .. } => {
+            let SpatialKernel::Gaussian { sigma_px } = kernel.spatial else { panic!("has no twin") };
+            let centre = extent.site(member);
+            let axis = |at: usize, len: usize| -> Vec<f64> {
+                (0..len).map(|other| in_space(sigma_px, at.abs_diff(other), len)).collect()
+            };
+            let frames = extent.frames;
+            let frame = (0..frames).map(|frame| in_time(&kernel.temporal, centre.frame, frame, frames));
+            (frame.collect(), axis(centre.y, extent.height), axis(centre.x, extent.width))
+        }
+        other => panic!("{other:?} has no twin"),
+    };
+    move |site| t[site.frame] * y[site.y] * x[site.x]
 }
 
 /// Weight of a row or column `apart` pixels away, relative to that of the centre; each of its images on a tile that
