@@ -91,6 +91,16 @@ pub enum ConfigError {
         /// Values expected.
         expected: usize,
     },
+    /// A table of another shape than the objective was planned for.
+    #[error(
+        "the table has shape {given:?} instead of {expected:?}: bring one of that [frame, y, x, sample, dim]"
+    )]
+    OtherShape {
+        /// Shape of the table.
+        given: [usize; 5],
+        /// Shape that the objective is planned for.
+        expected: [usize; 5],
+    },
     /// A point lies outside the unit cube.
     #[error("point coordinate {index} is {value}: give finite values in [0, 1)")]
     BadPoint {

@@ -9,7 +9,7 @@ use crate::class::Form;
 use crate::descent::{self, Descent, Schedule, Walker};
 use crate::domain::Domain;
 use crate::engine::{Engine, Pull};
-use crate::error::{ConfigError, TableError};
+use crate::error::ConfigError;
 use crate::kernel::{Kernel, SpatialKernel, TemporalKernel};
 use crate::lattice::Extent;
 use crate::objective::{DimensionGroup, Objective, Role, Slicing, Term};
@@ -167,12 +167,9 @@ impl Optimizer {
     ///
     /// # Errors
     /// As [`Optimizer::new`]; a table whose shape is not that of the configuration.
-    pub fn from_table(config: Config, table: SampleTable) -> Result<Self, TableError> {
+    pub fn from_table(config: Config, table: SampleTable) -> Result<Self, ConfigError> {
         let mut optimizer = Self::new(config)?;
-        let expected = optimizer.points.len();
-        if (table.extent(), table.dims()) != (optimizer.config.extent, optimizer.config.dims) {
-            return Err(TableError::Length { given: table.values().len(), expected });
-        }
+        optimizer.objective.check_table(&table)?;
         optimizer.points = table.into_values();
         Ok(optimizer)
     }
