@@ -185,9 +185,9 @@ fn sixteen_samples_per_pixel() {
 fn long_subsets_only() {
     for dims in [2, 3] {
         let extent = [1, 4, 5, 60];
-        let sizes = Case { subsets: 100, ..Case::new(extent, dims) }.check();
+        let sizes = Case { subsets: 50, ..Case::new(extent, dims) }.check();
         assert!(sizes.contains(&1200), "{sizes:?}"); // the whole table
-        let sizes = Case { subsets: 30, ..Case::new([1, 2, 3, 1025], dims) }.check();
+        let sizes = Case { subsets: 12, ..Case::new([1, 1, 2, 1025], dims) }.check();
         assert!(sizes.iter().all(|&size| size > 1024), "{sizes:?}");
     }
 }
