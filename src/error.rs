@@ -97,9 +97,9 @@ pub enum ConfigError {
     )]
     OtherShape {
         /// Shape of the table.
-        given: [usize; 5],
+        given: Box<[usize; 5]>,
         /// Shape that the objective is planned for.
-        expected: [usize; 5],
+        expected: Box<[usize; 5]>,
     },
     /// A point lies outside the unit cube.
     #[error("point coordinate {index} is {value}: give finite values in [0, 1)")]

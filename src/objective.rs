@@ -405,7 +405,7 @@ impl Objective {
     /// Refuses a table of another shape, also one that holds as many values.
     pub(crate) fn check_table(&self, table: &SampleTable) -> Result<(), ConfigError> {
         let Extent { frames, height, width, spp } = self.extent;
-        let (given, expected) = (table.shape(), [frames, height, width, spp, self.dims]);
+        let [given, expected] = [table.shape(), [frames, height, width, spp, self.dims]].map(Box::new);
         if given == expected { Ok(()) } else { Err(ConfigError::OtherShape { given, expected }) }
     }
 
