@@ -22,7 +22,7 @@ impl<'a> Law<'a> {
         let d = self.theta.len();
         let above = |subset: u32| {
             let corner: f64 = (0..d).filter(|i| subset >> i & 1 == 1).map(|i| self.theta[i].abs()).sum();
-            let sign = if subset.count_ones() % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = if subset.count_ones().is_multiple_of(2) { 1.0 } else { -1.0 };
             sign * (x - self.low - corner).max(0.0).powi(d as i32)
         };
         let volume: f64 = self.theta.iter().enumerate().map(|(i, t)| (i + 1) as f64 * t.abs()).product();

@@ -14,8 +14,11 @@ struct Raw {
     group: Vec<usize>,
     points: Vec<f64>,
     troubles: Vec<(usize, usize, usize, f64)>,
-    slices: Vec<(usize, usize, f64, Vec<f64>, Vec<f64>)>,
+    slices: Vec<RawSlice>,
 }
+
+/// Term, member, level, direction and cut.
+type RawSlice = (usize, usize, f64, Vec<f64>, Vec<f64>);
 
 struct Case {
     objective: Objective,
@@ -85,7 +88,7 @@ fn build(raw: &Raw) -> Case {
             };
         }
     }
-    let slice = |(term, member, level, direction, cut): &(usize, usize, f64, Vec<f64>, Vec<f64>)| {
+    let slice = |(term, member, level, direction, cut): &RawSlice| {
         let mut direction = direction[..group.len()].to_vec();
         if direction.iter().all(|component| component.abs() < 1e-3) {
             direction[0] = 1.0;
