@@ -54,7 +54,7 @@ fn a_run_ends_when_it_no_longer_improves() {
     let until = Until::Converged { improvement: 0.02, window_steps: 16, at_most: 100_000 };
     let report = small().run(until, on).unwrap();
     assert_eq!(report.ended, Ended::Converged);
-    assert!(report.steps % 16 == 0 && report.steps >= 32, "{report:?}");
+    assert!(report.steps.is_multiple_of(16) && report.steps >= 32, "{report:?}");
     assert!(report.slices < 100_000 * 256 / 10, "{report:?}");
     // A rule that never holds leaves the limit.
     let until = Until::Converged { improvement: 0.0, window_steps: 1000, at_most: 16 };
