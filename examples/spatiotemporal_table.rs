@@ -32,8 +32,8 @@ struct Arguments {
     /// Samples per pixel.
     #[arg(long, default_value_t = 1)]
     spp: usize,
-    /// Dimensions per sample.
-    #[arg(long, default_value_t = 2)]
+    /// Dimensions per sample, at most 1024.
+    #[arg(long, default_value_t = 2, value_parser = parse_dims)]
     dims: usize,
     /// Width of the spatial Gaussian exp(-r²/sigma²), in pixels.
     #[arg(long, default_value_t = 2.1)]
@@ -208,6 +208,15 @@ fn config(arguments: &Arguments) -> Config {
         descent,
         seed: arguments.seed,
         ..Config::new(extent, dims)
+    }
+}
+
+fn parse_dims(text: &str) -> Result<usize, String> {
+    // Directions take time and memory by the square of the dimensions and more.
+    const MOST: usize = 1024;
+    match text.parse() {
+        Ok(dims) if dims <= MOST => Ok(dims),
+        _ => Err(format!("'{text}' is no number of dimensions: give at most {MOST}")),
     }
 }
 

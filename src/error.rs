@@ -94,6 +94,16 @@ pub enum ConfigError {
         /// Values expected.
         expected: usize,
     },
+    /// A table of another shape than the objective was planned for.
+    #[error(
+        "the table has shape {given:?} instead of {expected:?}: bring one of that [frame, y, x, sample, dim]"
+    )]
+    OtherShape {
+        /// Shape of the table.
+        given: Box<[usize; 5]>,
+        /// Shape that the objective is planned for.
+        expected: Box<[usize; 5]>,
+    },
     /// A point lies outside the unit cube.
     #[error("point coordinate {index} is {value}: give finite values in [0, 1)")]
     BadPoint {
@@ -156,14 +166,6 @@ pub enum TableError {
         given: usize,
         /// Values expected.
         expected: usize,
-    },
-    /// A table of another shape than the configuration's.
-    #[error("the table has shape {given:?}, the configuration {expected:?}: give both the same")]
-    Shape {
-        /// `[frames, height, width, spp, dims]` of the table.
-        given: [usize; 5],
-        /// The same of the configuration.
-        expected: [usize; 5],
     },
     /// A value lies outside `[0, 1)` or is not finite.
     #[error("the value at [frame {}, y {}, x {}, sample {}, dim {}] is {value}: values must lie in [0, 1)", at[0], at[1], at[2], at[3], at[4])]

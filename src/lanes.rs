@@ -82,7 +82,13 @@ pub(crate) fn transport(
     buffers.means.resize(n, [0.0; LANES]);
     law.cell_means(&mut buffers.means[..n]);
     match_targets(&buffers.keys, &buffers.means, &mut buffers.targets[..=place_mask]);
-    displace(&buffers.projections, &buffers.targets, theta, moves)
+    let mut squares = displace(&buffers.projections, &buffers.targets, theta, moves);
+    let (_, extent) = law.support();
+    for lane in 0..LANES {
+        // An unused lane may have targets, but moves nothing.
+        squares[lane] = if extent[lane] > 0.0 { squares[lane] } else { 0.0 };
+    }
+    sum(squares)
 }
 
 #[inline(always)]
@@ -135,7 +141,7 @@ fn match_targets(keys: &[[u32; LANES]], means: &[Row], targets: &mut [Row]) {
 }
 
 #[inline(always)]
-fn displace(projections: &[Row], targets: &[Row], theta: &[Row], moves: &mut [f32]) -> f32 {
+fn displace(projections: &[Row], targets: &[Row], theta: &[Row], moves: &mut [f32]) -> Row {
     let mut squares = [0.0; LANES];
     for ((projection, target), moves) in
         projections.iter().zip(targets).zip(moves.chunks_exact_mut(theta.len()))
@@ -153,7 +159,7 @@ fn displace(projections: &[Row], targets: &[Row], theta: &[Row], moves: &mut [f3
             *moved = sum(along);
         }
     }
-    sum(squares)
+    squares
 }
 
 /// Sum over lanes in a fixed order, the same on every processor.

@@ -53,6 +53,10 @@ impl LongLaw<'_> {
         match self {
             LongLaw::Closed(law) => law.cell_mean(lower, upper),
             LongLaw::Tabulated { block, lane, lowest } => {
+                // A weight may be too small beside the sum of all to give its cell a width, or its mean any digits.
+                const NARROWEST: f64 = 1e-8;
+                let spare = 0.5 * (NARROWEST - (upper - lower)).max(0.0);
+                let (lower, upper) = ((lower - spare).max(0.0), (upper + spare).min(1.0));
                 let [low, high] = [lower, upper].map(|u| block.integral_of_lane(&Boundary::new(u), *lane));
                 lowest + (high - low) / (upper - lower)
             }

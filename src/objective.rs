@@ -18,6 +18,7 @@ use crate::lanes::{LANES, LONGEST};
 use crate::lattice::Extent;
 use crate::network::Network;
 use crate::stream::{self, Purpose};
+use crate::table::SampleTable;
 use crate::target::Target;
 use crate::transport::Workspace;
 
@@ -453,7 +454,14 @@ impl Objective {
         }));
     }
 
-    pub(crate) fn check_points(&self, points: &[f64]) -> Result<(), ConfigError> {
+    /// Refuses a table of another shape, also one that holds as many values.
+    pub(crate) fn check_table(&self, table: &SampleTable) -> Result<(), ConfigError> {
+        let Extent { frames, height, width, spp } = self.extent;
+        let [given, expected] = [table.shape(), [frames, height, width, spp, self.dims]].map(Box::new);
+        if given == expected { Ok(()) } else { Err(ConfigError::OtherShape { given, expected }) }
+    }
+
+    fn check_points(&self, points: &[f64]) -> Result<(), ConfigError> {
         let expected = self.extent.samples() * self.dims;
         if points.len() != expected {
             return Err(ConfigError::ValueCount {

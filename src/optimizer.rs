@@ -10,7 +10,7 @@ use crate::demand::Demand;
 use crate::descent::{self, Descent, Schedule, Walker};
 use crate::domain::Domain;
 use crate::engine::{Engine, Pull};
-use crate::error::{ConfigError, TableError};
+use crate::error::ConfigError;
 use crate::kernel::{Kernel, SpatialKernel, TemporalKernel};
 use crate::lattice::Extent;
 use crate::objective::{DimensionGroup, Objective, Role, Slicing, Term};
@@ -180,16 +180,22 @@ impl Optimizer {
         })
     }
 
-    /// Goes on from this table instead of white noise.
+    /// Starts from a table, as made by an earlier run.
+    ///
+    /// # Errors
+    /// As [`Optimizer::new`]; a table whose shape is not that of the configuration.
+    pub fn from_table(config: Config, table: SampleTable) -> Result<Self, ConfigError> {
+        let mut optimizer = Self::new(config)?;
+        optimizer.start_from(table)?;
+        Ok(optimizer)
+    }
+
+    /// Goes on from this table instead of what was reached.
     ///
     /// # Errors
     /// A table whose shape is not that of the configuration.
-    pub fn start_from(&mut self, table: SampleTable) -> Result<(), TableError> {
-        let Extent { frames, height, width, spp } = self.config.extent;
-        let expected = [frames, height, width, spp, self.config.dims];
-        if table.shape() != expected {
-            return Err(TableError::Shape { given: table.shape(), expected });
-        }
+    pub fn start_from(&mut self, table: SampleTable) -> Result<(), ConfigError> {
+        self.objective.check_table(&table)?;
         self.points = table.into_values();
         Ok(())
     }

@@ -42,8 +42,8 @@ pub fn bound(
     if slices == 0 {
         return Err(ConfigError::OutOfRange { name: "slices", value: 0.0, expected: "of at least 1" });
     }
+    objective.check_table(table)?;
     let points: Vec<f64> = table.values().iter().map(|&value| value.into()).collect();
-    objective.check_points(&points)?;
     let terms: Vec<Moments> = (0..objective.terms().count())
         .map(|term| Moments::of_term(objective, &points, seed, slices, term))
         .collect();

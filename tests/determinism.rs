@@ -1,0 +1,226 @@
+//! The same seed gives the same bits: at any thread count, in pieces, again by the number of slices. And the values
+//! themselves are pinned.
+
+use std::ops::ControlFlow;
+
+use fsot::{Config, Descent, Ended, Extent, Optimizer, Role, SampleTable, StepReport, Until, metrics};
+
+fn config(extent: [usize; 4], dims: usize, descent: Descent, seed: u64) -> Config {
+    let [frames, height, width, spp] = extent;
+    Config { descent, seed, ..Config::new(Extent { frames, height, width, spp }, dims) }
+}
+
+fn on(_: &StepReport) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+fn optimizer(config: &Config) -> Optimizer {
+    Optimizer::new(config.clone()).unwrap()
+}
+
+fn bits(table: &SampleTable) -> Vec<u32> {
+    table.values().iter().map(|value| value.to_bits()).collect()
+}
+
+fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(work)
+}
+
+/// Shapes whose steps hold many chunks of subsets, long subsets, several groups, and a table large enough for the
+/// parallel sort and for several tasks of the descent.
+fn cases() -> Vec<Config> {
+    vec![
+        config([1, 64, 64, 1], 2, Descent::barycentric(), 1),
+        config([8, 24, 20, 1], 2, Descent::barycentric(), 2),
+        config([1, 16, 16, 16], 2, Descent::adam(), 3),
+        config([1, 48, 48, 16], 2, Descent::barycentric(), 4),
+        config([1, 24, 24, 1], 4, Descent::sgd(), 5),
+        config([2, 20, 20, 1], 3, Descent::adam(), 6),
+    ]
+}
+
+#[test]
+fn threads_do_not_change_a_bit() {
+    for config in cases() {
+        let run = |threads| {
+            with_threads(threads, || {
+                let mut optimizer = optimizer(&config);
+                let mut displacements = Vec::new();
+                let report = optimizer
+                    .run(Until::SlicesPerClass(10), |step| {
+                        displacements.push(step.displacement.to_bits());
+                        ControlFlow::Continue(())
+                    })
+                    .unwrap();
+                let bound = metrics::bound(optimizer.objective(), &optimizer.table(), 9, 512).unwrap();
+                assert_eq!(report.steps as usize, displacements.len());
+                (bits(&optimizer.table()), displacements, bound)
+            })
+        };
+        let alone = run(1);
+        assert_ne!(alone.0, bits(&optimizer(&config).table()));
+        for threads in [2, 3, 8] {
+            let (table, displacements, bound) = run(threads);
+            assert!(table == alone.0, "{threads} threads, {:?}", config.extent);
+            assert!(displacements == alone.1, "{threads} threads, {:?}", config.extent);
+            for (one, other) in std::iter::once(&bound.total)
+                .chain(&bound.terms)
+                .zip(std::iter::once(&alone.2.total).chain(&alone.2.terms))
+            {
+                assert_eq!(one.value.to_bits(), other.value.to_bits());
+                assert_eq!(one.ratio_standard_error.to_bits(), other.ratio_standard_error.to_bits());
+            }
+        }
+    }
+}
+
+#[test]
+fn gradients_do_not_depend_on_threads() {
+    let config = config([2, 16, 16, 2], 3, Descent::barycentric(), 1);
+    let optimizer = optimizer(&config);
+    let points: Vec<f64> = optimizer.table().values().iter().map(|&value| value.into()).collect();
+    let mut slices = optimizer.objective().draw(1, 0, Role::Descend);
+    slices.extend(optimizer.objective().draw(1, 0, Role::Balance));
+    let run = |threads| {
+        with_threads(threads, || optimizer.objective().value_and_gradient(&points, &slices).unwrap())
+    };
+    let (value, gradient) = run(1);
+    for threads in [2, 3, 8] {
+        let (again, other) = run(threads);
+        assert_eq!(value.to_bits(), again.to_bits());
+        assert!(gradient.iter().zip(&other).all(|(a, b)| a.to_bits() == b.to_bits()));
+    }
+}
+
+#[test]
+fn seeds_differ() {
+    let run = |seed| {
+        let mut optimizer = optimizer(&config([1, 16, 16, 1], 2, Descent::barycentric(), seed));
+        optimizer.run(Until::SlicesPerClass(16), on).unwrap();
+        optimizer.into_table()
+    };
+    assert_eq!(bits(&run(7)), bits(&run(7)));
+    assert_ne!(bits(&run(7)), bits(&run(8)));
+    // The seed names the slices too, not only the table at the start.
+    let start = SampleTable::white_noise(Extent { frames: 1, height: 16, width: 16, spp: 1 }, 2, 0).unwrap();
+    let from_start = |seed| {
+        let config = config([1, 16, 16, 1], 2, Descent::barycentric(), seed);
+        let mut optimizer = Optimizer::from_table(config, start.clone()).unwrap();
+        optimizer.step(1.0, 1.0);
+        bits(&optimizer.into_table())
+    };
+    assert_ne!(from_start(7), from_start(8));
+}
+
+#[test]
+fn seconds_are_reproduced_by_slices() {
+    for config in [
+        config([1, 24, 24, 1], 2, Descent::barycentric(), 4),
+        config([4, 16, 16, 1], 2, Descent::adam(), 5),
+        config([1, 7, 5, 3], 4, Descent::sgd(), 6),
+    ] {
+        let mut timed = optimizer(&config);
+        let report = timed.run(Until::Seconds(0.1), on).unwrap();
+        assert_eq!(report.ended, Ended::Finished);
+        let mut counted = optimizer(&config);
+        let again = counted.run(Until::SlicesPerClass(report.slices_per_class), on).unwrap();
+        assert_eq!((again.steps, again.slices), (report.steps, report.slices));
+        assert_eq!(again.slices_per_class, report.slices_per_class);
+        assert!(bits(&timed.table()) == bits(&counted.table()), "{:?}", config.extent);
+    }
+}
+
+/// The number of slices that a run reports plans the same run again, whatever it was planned by.
+#[test]
+fn any_run_is_reproduced_by_its_slices() {
+    for until in [Until::Epochs(3), Until::SlicesPerClass(37), Until::SlicesPerClass(1)] {
+        let config = config([1, 12, 10, 1], 3, Descent::barycentric(), 4);
+        let (mut first, mut second) = (optimizer(&config), optimizer(&config));
+        let report = first.run(until, on).unwrap();
+        let again = second.run(Until::SlicesPerClass(report.slices_per_class), on).unwrap();
+        assert_eq!(report.steps, again.steps, "{until:?} {report:?}");
+        assert_eq!(bits(&first.table()), bits(&second.table()), "{until:?}");
+    }
+}
+
+#[test]
+fn halves_of_steps_make_the_whole() {
+    for descent in [Descent::barycentric(), Descent::adam(), Descent::sgd()] {
+        let config = config([2, 12, 12, 1], 2, descent, 11);
+        let (mut whole, mut halves) = (optimizer(&config), optimizer(&config));
+        for _ in 0..20 {
+            whole.step(0.1, 1.0);
+        }
+        for _ in 0..2 {
+            for _ in 0..10 {
+                halves.step(0.1, 1.0);
+            }
+            let _ = halves.table();
+        }
+        assert_eq!(bits(&whole.table()), bits(&halves.table()));
+    }
+}
+
+/// What is kept is what the steps up to the break made, on the schedule of the whole run.
+#[test]
+fn a_stopped_run_keeps_what_was_reached() {
+    for descent in [Descent::barycentric(), Descent::adam()] {
+        let config = config([1, 16, 16, 1], 2, descent, 12);
+        let mut stopped = optimizer(&config);
+        let mut planned = 0;
+        let report = stopped
+            .run(Until::SlicesPerClass(64), |step| {
+                planned = step.steps;
+                if step.step == 17 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            })
+            .unwrap();
+        assert_eq!((report.ended, report.steps), (Ended::Stopped, 17));
+        assert!(planned > 17);
+        let mut replayed = optimizer(&config);
+        let mut slices = 0;
+        for step in 0..17 {
+            let progress = step as f64 / planned as f64;
+            slices += replayed.step(config.descent.rate().at(progress), config.balance.at(progress)).1;
+        }
+        assert_eq!(bits(&stopped.table()), bits(&replayed.table()));
+        assert_eq!(slices, report.slices);
+    }
+}
+
+/// A run of steps of size 0 changes nothing, so the calibration of `Until::Seconds` leaves no trace.
+#[test]
+fn steps_of_size_zero_leave_the_table() {
+    let config = config([2, 12, 12, 1], 4, Descent::barycentric(), 13);
+    let mut optimizer = optimizer(&config);
+    let before = bits(&optimizer.table());
+    for _ in 0..5 {
+        optimizer.step(0.0, 0.0);
+    }
+    assert_eq!(bits(&optimizer.table()), before);
+}
+
+/// Value stability. When these move, every table does: a "Value-breaking change" that belongs in the CHANGELOG.
+///
+/// Compared to 1e-4 only, because the sine and cosine of the directions may differ in the last bit between platforms.
+/// Few and small steps, so that such a bit does not grow by the swap of two nearly tied samples.
+#[test]
+fn values_are_pinned() {
+    let values = |extent, dims, descent| {
+        let mut optimizer = optimizer(&config(extent, dims, descent, 1));
+        for _ in 0..4 {
+            optimizer.step(0.05, 0.05);
+        }
+        let table = optimizer.into_table();
+        let sum: f64 = table.values().iter().map(|&value| f64::from(value)).sum();
+        (table.values()[..4].to_vec(), sum / table.values().len() as f64)
+    };
+    for ((first, mean), (expected, expected_mean)) in [
+        (values([1, 8, 8, 1], 2, Descent::barycentric()), ([0.05073, 0.67073, 0.58796, 0.84613], 0.487267)),
+        (values([3, 5, 7, 1], 2, Descent::barycentric()), ([0.04972, 0.66737, 0.59431, 0.85863], 0.496808)),
+        (values([1, 6, 6, 2], 4, Descent::adam()), ([0.04315, 0.68156, 0.67579, 0.77177], 0.500442)),
+    ] {
+        let close = |a: f64, b: f64| (a - b).abs() < 1e-4;
+        let same = first.iter().zip(&expected).all(|(&a, &b)| close(a.into(), b));
+        assert!(same && close(mean, expected_mean), "{first:?} {mean:.6}");
+    }
+}
