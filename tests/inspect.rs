@@ -9,7 +9,7 @@ use fsot::{Extent, Metadata, SampleTable};
 use tempfile::{TempDir, tempdir};
 
 /// Enough to see that it works.
-const FEW: [&str; 2] = ["--integrands", "3"];
+const FEW: [&str; 4] = ["--integrands", "3", "--bound-slices", "64"];
 
 /// Built by `cargo test` beside this test.
 fn inspect(arguments: &[&str]) -> Output {
@@ -82,7 +82,10 @@ fn awkward_shapes_have_figures_and_a_page() {
 #[test]
 fn white_noise_is_called_white_noise() {
     let (_home, path) = table([2, 16, 16, 1], 2);
-    let text = figures(&path, &["--integrands", "64", "--temporal", "box:2", "--sigma", "1.5"]);
+    let text = figures(
+        &path,
+        &["--integrands", "64", "--temporal", "box:2", "--sigma", "1.5", "--bound-slices", "64"],
+    );
     let mean = |row: &str| -> f64 {
         let line = text.lines().find(|line| line.trim_start().starts_with(row)).unwrap();
         let (before, _) = line.split_once('±').unwrap();

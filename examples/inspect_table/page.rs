@@ -57,7 +57,7 @@ pub fn draw(inspection: &Inspection, shown: &Shown) -> Result<GrayImage, Failure
         "lies on one side of an edge. Left: its error, grey is none. Middle: what".into(),
         "a blur leaves of it, as an eye or a denoiser blurs. Right: at which".into(),
         "frequencies the error is, low ones in the middle. A dark middle is blue".into(),
-        "noise: the blur takes it away. White noise has all frequencies: even grey.".into(),
+        "noise: the blur takes it away. White noise is an even grey.".into(),
         format!("The blur: {}.", filter(inspection)),
     ];
     let top = 2 * MARGIN + introduction.len() * LINE;
@@ -101,7 +101,7 @@ fn errors(
     Ok(vec![
         panel(before, &pictures.raw, 2.0 * pictures.white[0]),
         panel(after, &pictures.filtered, 3.0 * pictures.white[1]),
-        Panel::new(["error spectrum, x and y", "black 0, grey 1, white 2"], spectrum(&spectra.xy, false)),
+        Panel::new(["error spectrum, x and y", "black 0, grey 1, white 2"], spectrum(&spectra.xy)),
     ])
 }
 
@@ -124,8 +124,8 @@ fn time(white: &Spectra, table: &Spectra) -> Row {
     Row {
         heading: "TIME: error spectrum in x and t".into(),
         panels: vec![
-            Panel::new(["white noise", scale], spectrum(&white.xt, true)),
-            Panel::new(["this table", scale], spectrum(&table.xt, true)),
+            Panel::new(["white noise", scale], spectrum(&white.xt)),
+            Panel::new(["this table", scale], spectrum(&table.xt)),
             Panel::new(["", ""], text),
         ],
     }
@@ -150,12 +150,12 @@ fn samples(table: &SampleTable, white: &SampleTable, dims: &[usize]) -> Row {
         samples.enumerate().map(|(i, sample)| [sample[dims[0]].into(), upwards(i, sample)]).collect()
     };
     let size = if count <= 256 { 6 } else { 2 };
-    let block_note = format!("{columns} x {rows} pixels: {count}");
+    let block_note = format!("{columns} x {rows} px, samples: {count}");
     let all = table.extent().samples();
     let kept: Vec<usize> = (0..table.extent().sites().min((MOST_DOTS / spp).max(1))).collect();
     let all_points = dots(table, &kept);
     let all_note = if all_points.len() == all {
-        format!("all {all} samples")
+        format!("all samples: {all}")
     } else {
         format!("first {} of {all}", all_points.len())
     };
@@ -199,10 +199,15 @@ fn statistics(inspection: &Inspection, shown: &Shown, white: &Spectra) -> Row {
         half_power: (0.5 * std::f64::consts::LN_2).sqrt() / (std::f64::consts::PI * inspection.sigma()),
         table,
     };
-    let content = if curves.table.is_empty() {
-        Content::Text(vec!["One pixel has no frequencies.".into()])
+    let power = if curves.table.is_empty() {
+        let text = ["A single pixel has no", "frequencies."];
+        Panel::new(["", ""], Content::Text(text.map(String::from).to_vec()))
     } else {
-        Content::Curves(curves)
+        let captions = [
+            "bold: this table; thin: white noise (expected 1)",
+            "power over cycles/pixel; | blur halves the power",
+        ];
+        Panel::new(captions, Content::Curves(curves))
     };
     Row {
         heading: "HISTOGRAM: black 0, grey mean, white twice. SPECTRUM: power by frequency".into(),
@@ -211,13 +216,7 @@ fn statistics(inspection: &Inspection, shown: &Shown, white: &Spectra) -> Row {
                 [&format!("table, {} cells", evenness.cells()), &spread],
                 Content::Picture { columns, levels, stretch: false },
             ),
-            Panel::new(
-                [
-                    "bold: this table; thin: white noise (expected 1)",
-                    "power over cycles/pixel; | blur halves the power",
-                ],
-                content,
-            ),
+            power,
         ],
     }
 }

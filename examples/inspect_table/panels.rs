@@ -21,7 +21,7 @@ pub struct Panel {
 }
 
 pub enum Content {
-    /// Grey levels, row by row, and whether both directions may be enlarged differently.
+    /// Grey levels, row by row; stretched to fill the square, or enlarged as they are.
     Picture { columns: usize, levels: Vec<u8>, stretch: bool },
     /// Points of the unit square, the second coordinate upwards.
     Dots { points: Vec<[f64; 2]>, size: usize },
@@ -56,10 +56,15 @@ impl Panel {
         match &self.content {
             Content::Picture { columns, levels, stretch } => {
                 let rows = levels.len() / columns;
-                let fit = |side: usize| (SIDE / side).max(1);
-                let both = fit((*columns).max(rows));
-                let zoom = if *stretch { [fit(*columns), fit(rows)] } else { [both; 2] };
-                canvas.picture([x, y], *columns, zoom, levels);
+                if *stretch {
+                    let nearest =
+                        |i: usize| levels[i / SIDE * rows / SIDE * columns + i % SIDE * columns / SIDE];
+                    let filled: Vec<u8> = (0..SIDE * SIDE).map(nearest).collect();
+                    canvas.picture([x, y], SIDE, [1; 2], &filled);
+                } else {
+                    let zoom = (SIDE / rows.max(*columns)).max(1);
+                    canvas.picture([x, y], *columns, [zoom; 2], levels);
+                }
             }
             Content::Dots { points, size } => {
                 framed(canvas, [x, y], [SIDE; 2]);
@@ -78,12 +83,11 @@ impl Panel {
     }
 }
 
-/// Values that are black at 0 and white at 2; pictures larger than a panel are averaged.
-pub fn spectrum(values: &Array2<f64>, stretch: bool) -> Content {
+/// Values that are black at 0 and white at 2, over all frequencies of either axis; what is larger than a panel is
+/// averaged.
+pub fn spectrum(values: &Array2<f64>) -> Content {
     let (height, width) = values.dim();
-    let shrink = |side: usize| side.div_ceil(SIDE);
-    let [down, across] =
-        if stretch { [shrink(height), shrink(width)] } else { [shrink(height.max(width)); 2] };
+    let [down, across] = [height, width].map(|side| side.div_ceil(SIDE));
     let (rows, columns) = (height.div_ceil(down), width.div_ceil(across));
     let mean = |row: usize, column: usize| {
         let cells = (row * down..((row + 1) * down).min(height))
@@ -92,7 +96,7 @@ pub fn spectrum(values: &Array2<f64>, stretch: bool) -> Content {
         sum / count
     };
     let levels = (0..rows * columns).map(|i| grey(0.5 * mean(i / columns, i % columns))).collect();
-    Content::Picture { columns, levels, stretch }
+    Content::Picture { columns, levels, stretch: true }
 }
 
 /// An empty field with a frame around it.

@@ -18,9 +18,6 @@ const LOW: f64 = 0.1;
 /// Pairs of samples whose comparison takes some ten seconds.
 const MOST_PAIRS: u64 = 10_000_000_000;
 
-/// Enough slices for a standard error of about half a percent of the bound's ratio.
-const BOUND_SLICES: usize = 16_384;
-
 /// What the page shows of the first dimension group.
 pub struct Shown {
     pub dims: Vec<usize>,
@@ -199,11 +196,11 @@ fn write_bound(
     inspection: &Inspection,
     groups: &[DimensionGroup],
 ) -> Result<(), Failure> {
-    let Inspection { table, kernel, seed, .. } = inspection;
+    let Inspection { table, kernel, bound_slices, seed, .. } = inspection;
     let terms = Objective::blue_noise(std::slice::from_ref(kernel), Form::LevelSets, groups, &table.extent());
     let domains = vec![Domain::Interval; table.dims()];
     let objective = Objective::new(table.extent(), table.dims(), &domains, &terms, &Slicing::default())?;
-    let total = bound(&objective, table, *seed, BOUND_SLICES)?.total;
+    let total = bound(&objective, table, *seed, *bound_slices)?.total;
     writeln!(
         out,
         "\nbound {:.5} ± {:.5}, {:.4} ± {:.4} of white noise",
