@@ -2,6 +2,9 @@
 //!
 //! `cargo run --release --example spatiotemporal_table -- --help`
 
+#[path = "common/temporal.rs"]
+mod temporal;
+
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -40,7 +43,7 @@ struct Arguments {
     sigma: f64,
     /// none, gaussian:SIGMA, ema:ALPHA, box:N, binomial:N, perceptual:FPS or taps:a,b,… with the current frame first
     /// [default: perceptual:60; none for a single frame].
-    #[arg(long, value_parser = parse_temporal)]
+    #[arg(long, value_parser = temporal::parse)]
     temporal: Option<TemporalKernel>,
     /// Dimension groups with weights, as in "0,1:1;2,3:1;0-3:0.5" [default: consecutive pairs, and the whole at half
     /// their weight].
@@ -183,11 +186,7 @@ fn optimize(arguments: &Arguments) -> Result<(), Failure> {
 fn config(arguments: &Arguments) -> Config {
     let Arguments { width, height, frames, spp, dims, sigma, .. } = *arguments;
     let extent = Extent { frames, height, width, spp };
-    let temporal = match &arguments.temporal {
-        Some(temporal) => temporal.clone(),
-        None if frames > 1 => TemporalKernel::Perceptual { fps: 60.0 },
-        None => TemporalKernel::None,
-    };
+    let temporal = temporal::or_default(arguments.temporal.as_ref(), frames);
     let kernel = Kernel::product(SpatialKernel::Gaussian { sigma_px: sigma }, temporal);
     let groups = match &arguments.groups {
         Some(Groups(groups)) => groups.clone(),
@@ -217,30 +216,6 @@ fn parse_dims(text: &str) -> Result<usize, String> {
     match text.parse() {
         Ok(dims) if dims <= MOST => Ok(dims),
         _ => Err(format!("'{text}' is no number of dimensions: give at most {MOST}")),
-    }
-}
-
-fn parse_temporal(text: &str) -> Result<TemporalKernel, String> {
-    let (name, value) = text.split_once(':').unwrap_or((text, ""));
-    let number = || value.parse::<f64>().map_err(|_| format!("'{value}' is no number: write {name}:NUMBER"));
-    let count = || value.parse::<usize>().map_err(|_| format!("'{value}' is no count: write {name}:FRAMES"));
-    match name {
-        "none" if value.is_empty() => Ok(TemporalKernel::None),
-        "gaussian" => Ok(TemporalKernel::Gaussian { sigma_frames: number()? }),
-        "ema" => Ok(TemporalKernel::Ema { alpha: number()? }),
-        "box" => Ok(TemporalKernel::Box { frames: count()? }),
-        "binomial" => Ok(TemporalKernel::Binomial { frames: count()? }),
-        "perceptual" => Ok(TemporalKernel::Perceptual { fps: number()? }),
-        "taps" => {
-            let taps = value.split(',').map(|tap| tap.trim().parse::<f64>());
-            let taps: Result<Vec<f64>, _> = taps.collect();
-            taps.map(TemporalKernel::Taps)
-                .map_err(|_| format!("'{value}' is no list of numbers: write taps:0.5,0.3,0.2"))
-        }
-        _ => Err(format!(
-            "'{text}' is no temporal kernel: write none, gaussian:SIGMA, ema:ALPHA, box:N, binomial:N, \
-             perceptual:FPS or taps:a,b,…"
-        )),
     }
 }
 

@@ -7,6 +7,8 @@
 //! Prints the errors as ratios to white noise and writes `SCENE-SPPspp.png`, a contact sheet with a column per
 //! sampler (rendered, filtered, filtered error, error spectrum), and one EXR of the last frame per sampler.
 
+#[path = "../common/canvas.rs"]
+mod canvas;
 mod sheet;
 
 use std::path::{Path, PathBuf};

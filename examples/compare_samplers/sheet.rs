@@ -1,18 +1,13 @@
-//! A labelled contact sheet: grey pictures in a grid, with a tiny bitmap font.
+//! A labelled contact sheet: grey pictures in a grid.
 
-use font8x8::{BASIC_FONTS, UnicodeFonts};
 use fsot::render::{Film, RenderError};
-use image::{GrayImage, Luma};
+use image::GrayImage;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
+use crate::canvas::{Canvas, LETTER, LINE, MARGIN, grey};
+
 const ROWS: usize = 4;
-/// Glyphs have 8 × 8 pixels; captions are drawn at this scale.
-const TEXT: usize = 2;
-const LINE: usize = 8 * TEXT + 6;
-const MARGIN: usize = 12;
-const INK: Luma<u8> = Luma([235]);
-const PAPER: Luma<u8> = Luma([24]);
 
 /// One picture of a column.
 pub struct Cell {
@@ -34,8 +29,8 @@ impl Cell {
 
     /// Grey levels in `[0, 1]` as they are to be shown; others are clamped.
     pub fn levels(caption: &str, values: &[f64]) -> Self {
-        let grey = values.iter().map(|value| (value.clamp(0.0, 1.0) * 255.0).round() as u8).collect();
-        Self { caption: caption.into(), content: Ok(grey) }
+        let levels = values.iter().map(|&value| grey(value)).collect();
+        Self { caption: caption.into(), content: Ok(levels) }
     }
 
     /// Lines of text.
@@ -69,62 +64,31 @@ impl Sheet {
         let (step_x, step_y) = (cell + MARGIN, cell + LINE + MARGIN);
         let top = MARGIN + 5 * LINE + 2 * MARGIN;
         let width = MARGIN + self.columns.len() * step_x;
-        let mut out = GrayImage::from_pixel(width as u32, (top + ROWS * step_y) as u32, PAPER);
-        write(&mut out, MARGIN, MARGIN, &self.title, width - MARGIN);
+        let mut out = Canvas::new(width, top + ROWS * step_y);
+        out.write([MARGIN; 2], &self.title, width - MARGIN);
         for (column, (heading, notes, cells)) in self.columns.iter().enumerate() {
             let x = MARGIN + column * step_x;
             let letters: Vec<char> = heading.chars().collect();
-            let (first, rest) = letters.split_at(letters.len().min(cell / (8 * TEXT)));
+            let (first, rest) = letters.split_at(letters.len().min(cell / LETTER));
             let lines = [first.iter().collect(), rest.iter().collect()].into_iter().chain(notes.clone());
             for (line, text) in lines.enumerate() {
                 let text: &str = &text;
-                write(&mut out, x, 2 * MARGIN + (line + 1) * LINE, text, cell);
+                out.write([x, 2 * MARGIN + (line + 1) * LINE], text, cell);
             }
             for (row, Cell { caption, content }) in cells.iter().enumerate() {
                 let y = top + row * step_y;
-                write(&mut out, x, y, caption, cell);
+                out.write([x, y], caption, cell);
                 match content {
                     Err(lines) => {
                         for (line, text) in lines.iter().enumerate() {
-                            write(&mut out, x, y + (line + 1) * LINE, text, cell);
+                            out.write([x, y + (line + 1) * LINE], text, cell);
                         }
                     }
-                    Ok(grey) => {
-                        for (i, &level) in grey.iter().enumerate() {
-                            let (left, above) = (i % self.side * self.zoom, i / self.side * self.zoom);
-                            fill(&mut out, [x + left, y + LINE + above], self.zoom, Luma([level]));
-                        }
-                    }
+                    Ok(levels) => out.picture([x, y + LINE], self.side, [self.zoom; 2], levels),
                 }
             }
         }
-        out
-    }
-}
-
-fn fill(out: &mut GrayImage, [x, y]: [usize; 2], side: usize, level: Luma<u8>) {
-    for dy in 0..side {
-        for dx in 0..side {
-            out.put_pixel((x + dx) as u32, (y + dy) as u32, level);
-        }
-    }
-}
-
-/// Writes one line; what does not fit into `room` pixels ends in `..`.
-fn write(out: &mut GrayImage, x: usize, y: usize, text: &str, room: usize) {
-    let fits = room / (8 * TEXT);
-    let mut text: Vec<char> = text.chars().collect();
-    if text.len() > fits {
-        text.truncate(fits.saturating_sub(2));
-        text.extend(['.', '.']);
-    }
-    for (at, c) in text.into_iter().enumerate() {
-        let glyph = BASIC_FONTS.get(c).or_else(|| BASIC_FONTS.get('?')).unwrap_or_default();
-        for (row, bits) in glyph.into_iter().enumerate() {
-            for column in (0..8).filter(|column| bits >> column & 1 == 1) {
-                fill(out, [x + (8 * at + column) * TEXT, y + row * TEXT], TEXT, INK);
-            }
-        }
+        out.into_image()
     }
 }
 
