@@ -34,9 +34,6 @@ pub(crate) enum LongLaw<'a> {
     },
 }
 
-/// Narrower cells are widened: the difference of two tabulated integrals would be rounding, or 0 over 0.
-const NARROWEST: f64 = 1e-9;
-
 impl LongLaw<'_> {
     fn cell_means(&self, means: &mut [f64]) {
         match *self {
@@ -64,12 +61,14 @@ impl LongLaw<'_> {
         match *self {
             LongLaw::Closed(ref law) => law.cell_mean(lower, upper),
             LongLaw::Tabulated { block, lane, lowest, extent } => {
-                let lower = lower.min(upper - NARROWEST).max(0.0);
-                let upper = upper.max(lower + NARROWEST);
+                // A weight may be too small beside the sum of all to give its cell a width, or its mean any digits.
+                const NARROWEST: f64 = 1e-8;
+                let spare = 0.5 * (NARROWEST - (upper - lower)).max(0.0);
+                let (lower, upper) = ((lower - spare).max(0.0), (upper + spare).min(1.0));
                 let lower_half = |u: f64| block.integral_of_lane(&Boundary::new(u), lane);
                 // The quantile at 1 - u is the extent less that at u.
                 let integral = |u: f64| {
-                    if u <= 0.5 { lower_half(u) } else { extent * (u - 0.5) + lower_half((1.0 - u).max(0.0)) }
+                    if u <= 0.5 { lower_half(u) } else { extent * (u - 0.5) + lower_half(1.0 - u) }
                 };
                 lowest + (integral(upper) - integral(lower)) / (upper - lower)
             }
