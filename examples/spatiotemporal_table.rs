@@ -36,7 +36,7 @@ struct Arguments {
     #[arg(long, default_value_t = 1)]
     spp: usize,
     /// Dimensions per sample, at most 1024.
-    #[arg(long, default_value_t = 2, value_parser = parse_dims)]
+    #[arg(long, default_value_t = 2)]
     dims: usize,
     /// Width of the spatial Gaussian exp(-r²/sigma²), in pixels.
     #[arg(long, default_value_t = 2.1)]
@@ -201,22 +201,12 @@ fn config(arguments: &Arguments) -> Config {
         DescentName::Adam => Descent::adam(),
         DescentName::Sgd => Descent::sgd(),
     };
-    Config {
-        domains: vec![domain; dims],
-        terms: Objective::blue_noise(&[kernel], Form::LevelSets, &groups, &extent),
-        descent,
-        seed: arguments.seed,
-        ..Config::new(extent, dims)
-    }
-}
-
-fn parse_dims(text: &str) -> Result<usize, String> {
-    // Directions take time and memory by the square of the dimensions and more.
-    const MOST: usize = 1024;
-    match text.parse() {
-        Ok(dims) if dims <= MOST => Ok(dims),
-        _ => Err(format!("'{text}' is no number of dimensions: give at most {MOST}")),
-    }
+    let mut config = Config::new(extent, dims);
+    config.domains.fill(domain);
+    config.terms = Objective::blue_noise(&[kernel], Form::LevelSets, &groups, &extent);
+    config.descent = descent;
+    config.seed = arguments.seed;
+    config
 }
 
 fn parse_groups(text: &str) -> Result<Groups, String> {

@@ -3,7 +3,12 @@
 //! Computing the law of a projection costs far more than transporting a small subset along it. A bank therefore
 //! keeps the laws of a few hundred directions, the rows of random orthonormal frames. The law depends on the
 //! absolute values of the components only, whatever their order; a random signed permutation of the axes per use
-//! turns each stored direction into `2^d d!` of them and keeps its frame orthonormal.
+//! turns each stored direction into `2^d d!` of them and keeps its frame orthonormal. The law is symmetric, so its lower
+//! half is enough.
+//!
+//! What interpolation costs: in 3, 4, 5, 8 and 16 dimensions no mean over a quantile cell was off by more than 1.4e-7
+//! for subsets of up to 4096 samples (4e-9 up to 97 samples), and by more than 4.2e-7 for 40,000; the f32 around it rounds by
+//! 1e-7. The tests below print the worst of each.
 
 use nalgebra::DMatrix;
 use rand::RngExt;
@@ -25,22 +30,22 @@ pub(crate) struct Bank {
 pub(crate) struct Block {
     /// Unit vectors, one row of lanes per dimension.
     pub theta: Vec<Row>,
-    /// Integral of the quantile of `|theta|` from 0 to each knot, and its derivative with respect to the knot's
-    /// place.
+    /// Integral of the quantile of `|theta|` from 0 to each knot of the lower half, and its derivative with respect to
+    /// the knot's place.
     knots: Vec<[[f64; LANES]; 2]>,
 }
 
-/// Where a boundary between quantile cells lies among the knots, with the weights of cubic Hermite interpolation.
+/// Where a boundary between quantile cells of the lower half lies among the knots, with the weights of cubic Hermite interpolation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Boundary {
     interval: u32,
     weights: [f64; 4],
 }
 
-/// Blocks per bank: 512 directions, 1 MiB.
+/// Blocks per bank: 512 directions, 2 MiB.
 const BLOCKS: usize = 32;
-/// Intervals between knots.
-const INTERVALS: usize = 128;
+/// Intervals between the knots, which share the lower half.
+const INTERVALS: usize = 256;
 
 impl Bank {
     /// The bank for `dims ≥ 3` dimensions; always the same.
@@ -109,7 +114,7 @@ impl Block {
 }
 
 impl Boundary {
-    /// The boundary at `u` in `[0, 1]`.
+    /// The boundary at `u` in `[0, 1/2]`.
     pub(crate) fn new(u: f64) -> Self {
         let place = placed(u) * INTERVALS as f64;
         let interval = (place as usize).min(INTERVALS - 1);
@@ -119,27 +124,23 @@ impl Boundary {
         Self { interval: interval as u32, weights }
     }
 
-    /// The `n + 1` boundaries of `n` equal cells.
+    /// The upper boundaries of those of `n` equal cells that lie in the lower half.
     pub(crate) fn grid(n: usize) -> impl Iterator<Item = Self> {
-        (0..=n).map(move |i| Self::new(i as f64 / n as f64))
+        (1..=n / 2).map(move |cell| Self::new(cell as f64 / n as f64))
     }
 }
 
-/// Exponent that crowds the knots towards 0 and 1, where the quantile of a sum of `d` uniforms rises as `u^(1/d)`.
-const CROWDING: i32 = 3;
-
 /// Quantile level at this place in `[0, 1]` among the knots, and the level's derivative with respect to the place.
+///
+/// The cube crowds the knots towards 0, where the quantile of a sum of `d` uniforms rises as `u^(1/d)`. The square is 20
+/// times worse over the first cells of large subsets, the fourth power 5 times worse everywhere else.
 fn unplaced(place: f64) -> (f64, f64) {
-    let (low, high) = (place.powi(CROWDING), (1.0 - place).powi(CROWDING));
-    let sum = low + high;
-    let slope = place.powi(CROWDING - 1) * (1.0 - place).powi(CROWDING - 1);
-    (low / sum, f64::from(CROWDING) * slope / (sum * sum))
+    (0.5 * place.powi(3), 1.5 * place.powi(2))
 }
 
 /// Inverse of [`unplaced`].
 fn placed(u: f64) -> f64 {
-    let (low, high) = (u.cbrt(), (1.0 - u).cbrt());
-    low / (low + high)
+    (2.0 * u).cbrt()
 }
 
 #[cfg(test)]
@@ -151,11 +152,11 @@ mod tests {
         for i in 0..=1000 {
             let place = f64::from(i) / 1000.0;
             let (u, spread) = unplaced(place);
-            assert!((placed(u) - place).abs() < 1e-12, "{place}");
-            if (1..1000).contains(&i) {
-                let secant = (unplaced(place + 1e-6).0 - unplaced(place - 1e-6).0) / 2e-6;
-                assert!((secant - spread).abs() < 1e-6, "{place}");
-            }
+            // A handful of roundings each.
+            assert!((placed(u) - place).abs() < 1e-15, "{place}");
+            let secant = (unplaced(place + 1e-6).0 - unplaced(place - 1e-6).0) / 2e-6;
+            // Rounding of u ≤ 1/2 over the step: 1e-16 / 1e-6.
+            assert!((secant - spread).abs() < 2e-10, "{place} {secant} {spread}");
         }
     }
 
@@ -175,30 +176,33 @@ mod tests {
         }
     }
 
-    /// Interpolation may cost accuracy, but less than the optimiser's `f32` does over a subset's spacing.
+    /// Every 16th direction of the bank, and all subset sizes that matter: the worst is what the module promises.
     #[test]
     fn tabulated_cell_means_are_those_of_the_law() {
         for dims in [3, 4, 5, 8, 16] {
             let bank = Bank::new(dims, &Target::UniformCube);
-            for index in [0, 17] {
-                let block = bank.block(index);
-                for lane in [0, 5, 15] {
+            let laws: Vec<_> = (0..bank.len())
+                .map(|index| {
+                    let (block, lane) = (bank.block(index), index % LANES);
                     let lengths: Vec<f64> =
                         block.theta.iter().map(|row| f64::from(row[lane]).abs()).collect();
-                    let law = Target::UniformCube.project(&lengths);
-                    for n in [1, 2, 7, 36, 400, 4096] {
-                        let grid: Vec<Boundary> = Boundary::grid(n).collect();
-                        for (cell, expected) in law.cell_means(n).enumerate() {
-                            let integral = |at: usize| block.integral_of_lane(&grid[at], lane);
-                            let mean = (integral(cell + 1) - integral(cell)) * n as f64;
-                            assert!(
-                                (mean - expected).abs() < 2e-6,
-                                "dims {dims} n {n} cell {cell}: {mean} {expected}"
-                            );
-                            assert_eq!(block.integral(&grid[cell])[lane], integral(cell));
-                        }
+                    (block, lane, Target::UniformCube.project(&lengths))
+                })
+                .collect();
+            for (n, promised) in [(2, 5e-9), (7, 5e-9), (36, 5e-9), (97, 5e-9), (4096, 2e-7), (40_000, 5e-7)]
+            {
+                let grid: Vec<Boundary> = Boundary::grid(n).collect();
+                let mut worst = 0.0_f64;
+                for (block, lane, law) in &laws {
+                    let mut below = 0.0;
+                    for (boundary, expected) in grid.iter().zip(law.cell_means(n)) {
+                        let integral = block.integral_of_lane(boundary, *lane);
+                        worst = worst.max(((integral - below) * n as f64 - expected).abs());
+                        below = integral;
                     }
                 }
+                println!("{dims} dimensions, {n} cells: {worst:.1e}");
+                assert!(worst < promised, "{dims} dimensions, {n} cells: {worst}");
             }
         }
     }

@@ -36,7 +36,7 @@ pub enum Descent {
         beta1: f64,
         /// Decay of the second moment, in `[0, 1)`.
         beta2: f64,
-        /// Added to the root of the second moment; above 0.
+        /// Added to the root of the second moment; in `[1e-30, 1e6]`.
         epsilon: f64,
     },
 }
@@ -44,9 +44,9 @@ pub enum Descent {
 /// A number that changes over a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Schedule {
-    /// Value at the first step; above 0.
+    /// Value at the first step; in `(0, 1e6]`.
     pub first: f64,
-    /// Value that the last step approaches; above 0.
+    /// Value that the last step approaches; in `(0, 1e6]`.
     pub last: f64,
     /// How the value gets there.
     pub shape: Shape,
@@ -82,8 +82,8 @@ impl Schedule {
 
     pub(crate) fn validate(&self) -> Result<(), ConfigError> {
         for (name, value) in [("the first step size", self.first), ("the last step size", self.last)] {
-            if !(value > 0.0 && value.is_finite()) {
-                return Err(ConfigError::OutOfRange { name, value, expected: "above 0 and finite" });
+            if !(value > 0.0 && value <= 1e6) {
+                return Err(ConfigError::OutOfRange { name, value, expected: "above 0, at most 1e6" });
             }
         }
         Ok(())
@@ -137,7 +137,8 @@ impl Descent {
             Descent::Adam { beta1, beta2, epsilon, .. } => {
                 share("beta1", beta1)?;
                 share("beta2", beta2)?;
-                check("epsilon", epsilon, epsilon > 0.0 && epsilon.is_finite(), "above 0 and finite")
+                // A smaller one would be 0 in f32, and a coordinate that nothing pulls 0 / 0.
+                check("epsilon", epsilon, (1e-30..=1e6).contains(&epsilon), "from 1e-30 to 1e6")
             }
         }
     }
@@ -339,5 +340,6 @@ mod tests {
         assert_eq!(name(adam(-0.1, 0.9, 1e-8)), "beta1");
         assert_eq!(name(adam(0.9, 1.0, 1e-8)), "beta2");
         assert_eq!(name(adam(0.9, 0.99, 0.0)), "epsilon");
+        assert_eq!(name(adam(0.9, 0.99, 1e-50)), "epsilon");
     }
 }

@@ -22,14 +22,15 @@ pub const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
 impl Domain {
     /// Brings a finite coordinate back into `[0, 1)`: clamped to the faces of an interval, wrapped on a torus.
     ///
-    /// The result is never 1.0, also where rounding would give it.
+    /// The result is never 1.0, also where rounding would give it. What is not a number becomes 0.
     #[inline(always)]
+    #[allow(clippy::manual_clamp)] // `clamp` would let NaN through
     pub fn admit(self, coordinate: f32) -> f32 {
         let inside = match self {
             Domain::Interval => coordinate,
             Domain::Torus => coordinate - coordinate.floor(),
         };
-        inside.clamp(0.0, BELOW_ONE)
+        inside.max(0.0).min(BELOW_ONE)
     }
 }
 
@@ -40,7 +41,19 @@ mod tests {
     #[test]
     fn one_never_appears() {
         for domain in [Domain::Interval, Domain::Torus] {
-            for coordinate in [1.0, -1e-9, -f32::MIN_POSITIVE, 1.0 - 1e-8, -0.0, 2.0, -1.0, 1e9, -1e9] {
+            for coordinate in [
+                1.0,
+                -1e-9,
+                -f32::MIN_POSITIVE,
+                1.0 - 1e-8,
+                -0.0,
+                2.0,
+                -1.0,
+                1e9,
+                -1e9,
+                f32::INFINITY,
+                f32::NAN,
+            ] {
                 let inside = domain.admit(coordinate);
                 assert!((0.0..1.0).contains(&inside), "{domain:?} {coordinate} -> {inside}");
             }

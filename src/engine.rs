@@ -165,8 +165,10 @@ impl Chunk {
             let component = |dim: usize| theta[dim][lane];
             let law = match block {
                 Some(block) if !on_axis[lane] => {
-                    let lowest = theta.iter().map(|row| f64::from(row[lane].min(0.0))).sum();
-                    LongLaw::Tabulated { block, lane, lowest }
+                    let components = || theta.iter().map(|row| f64::from(row[lane]));
+                    let lowest = components().map(|component| component.min(0.0)).sum();
+                    let extent = components().map(f64::abs).sum();
+                    LongLaw::Tabulated { block, lane, lowest, extent }
                 }
                 // A coordinate axis has the law of one dimension; otherwise there are at most two.
                 Some(_) => LongLaw::Closed(term.spec.target.project(&[1.0])),

@@ -20,6 +20,9 @@ pub struct Extent {
     pub spp: usize,
 }
 
+/// Most dimensions of a sample: directions take time and memory by the square of them and more.
+pub(crate) const MOST_DIMS: usize = 1024;
+
 /// Position of a pixel of one frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Site {
@@ -64,7 +67,7 @@ impl Extent {
         }
     }
 
-    /// Checks that no axis is empty and that `samples * dims` values can be numbered with 32 bits.
+    /// Checks that no axis is empty, that there are at most [`MOST_DIMS`] dimensions, and that `samples * dims` values can be numbered with 32 bits.
     pub(crate) fn validate(&self, dims: usize) -> Result<(), ConfigError> {
         let axes = [
             ("frames", self.frames),
@@ -79,6 +82,10 @@ impl Extent {
                 return Err(ConfigError::EmptyAxis { axis });
             }
             values = values.saturating_mul(len as u64);
+        }
+        if dims > MOST_DIMS {
+            let expected = "of at most 1024";
+            return Err(ConfigError::OutOfRange { name: "dims", value: dims as f64, expected });
         }
         if values > u64::from(u32::MAX) {
             return Err(ConfigError::TooLarge { values });

@@ -131,14 +131,24 @@ impl<'a> Tabulated<'a> {
         let n = means.len();
         let cells = n as f64;
         let mut below = [0.0; LANES];
-        for (rank, mean) in means.iter_mut().enumerate() {
-            let integral = self.block.integral(&self.grid[rank + 1]);
+        let (lower, upper) = means.split_at_mut(n / 2);
+        let mirrored = upper.iter_mut().rev();
+        for (rank, ((mean, mirrored), boundary)) in lower.iter_mut().zip(mirrored).zip(self.grid).enumerate()
+        {
+            let integral = self.block.integral(boundary);
             let uniform = (rank as f32 + 0.5) / n as f32;
             for lane in 0..LANES {
-                let above = ((integral[lane] - below[lane]) * cells) as f32;
-                mean[lane] = self.lowest[lane] + if self.on_axis[lane] { uniform } else { above };
+                let tabulated = ((integral[lane] - below[lane]) * cells) as f32;
+                let above = if self.on_axis[lane] { uniform } else { tabulated };
+                mean[lane] = self.lowest[lane] + above;
+                mirrored[lane] = self.lowest[lane] + (self.extent[lane] - above);
             }
             below = integral;
+        }
+        if n % 2 == 1 {
+            for (lane, middle) in upper[0].iter_mut().enumerate() {
+                *middle = self.lowest[lane] + 0.5 * self.extent[lane];
+            }
         }
     }
 }

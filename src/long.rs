@@ -29,36 +29,48 @@ pub(crate) enum LongLaw<'a> {
         lane: usize,
         /// Lowest projection.
         lowest: f64,
+        /// Length of the support.
+        extent: f64,
     },
 }
 
 impl LongLaw<'_> {
     fn cell_means(&self, means: &mut [f64]) {
-        match self {
-            LongLaw::Closed(law) => law.cell_means_into(means),
-            LongLaw::Tabulated { block, lane, lowest } => {
-                let cells = means.len() as f64;
+        match *self {
+            LongLaw::Closed(ref law) => law.cell_means_into(means),
+            LongLaw::Tabulated { block, lane, lowest, extent } => {
+                let n = means.len();
+                let cells = n as f64;
                 let mut below = 0.0;
-                for (cell, mean) in means.iter_mut().enumerate() {
+                for cell in 0..n / 2 {
                     let boundary = Boundary::new((cell + 1) as f64 / cells);
-                    let integral = block.integral_of_lane(&boundary, *lane);
-                    *mean = lowest + (integral - below) * cells;
+                    let integral = block.integral_of_lane(&boundary, lane);
+                    let above = (integral - below) * cells;
+                    means[cell] = lowest + above;
+                    means[n - 1 - cell] = lowest + (extent - above);
                     below = integral;
+                }
+                if n % 2 == 1 {
+                    means[n / 2] = lowest + 0.5 * extent;
                 }
             }
         }
     }
 
     fn cell_mean(&self, lower: f64, upper: f64) -> f64 {
-        match self {
-            LongLaw::Closed(law) => law.cell_mean(lower, upper),
-            LongLaw::Tabulated { block, lane, lowest } => {
+        match *self {
+            LongLaw::Closed(ref law) => law.cell_mean(lower, upper),
+            LongLaw::Tabulated { block, lane, lowest, extent } => {
                 // A weight may be too small beside the sum of all to give its cell a width, or its mean any digits.
                 const NARROWEST: f64 = 1e-8;
                 let spare = 0.5 * (NARROWEST - (upper - lower)).max(0.0);
                 let (lower, upper) = ((lower - spare).max(0.0), (upper + spare).min(1.0));
-                let [low, high] = [lower, upper].map(|u| block.integral_of_lane(&Boundary::new(u), *lane));
-                lowest + (high - low) / (upper - lower)
+                let lower_half = |u: f64| block.integral_of_lane(&Boundary::new(u), lane);
+                // The quantile at 1 - u is the extent less that at u.
+                let integral = |u: f64| {
+                    if u <= 0.5 { lower_half(u) } else { extent * (u - 0.5) + lower_half(1.0 - u) }
+                };
+                lowest + (integral(upper) - integral(lower)) / (upper - lower)
             }
         }
     }

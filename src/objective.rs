@@ -15,7 +15,7 @@ use crate::domain::Domain;
 use crate::error::ConfigError;
 use crate::kernel::{Kernel, Tap};
 use crate::lanes::{LANES, LONGEST};
-use crate::lattice::Extent;
+use crate::lattice::{Extent, MOST_DIMS};
 use crate::network::Network;
 use crate::stream::{self, Purpose};
 use crate::table::SampleTable;
@@ -61,9 +61,9 @@ pub struct DimensionGroup {
 
 impl DimensionGroup {
     /// Consecutive pairs of dimensions with weight 1 (a last odd one alone), and all dimensions together with half
-    /// that weight if there are more than two.
+    /// that weight if there are more than two. No table has more than 1024 dimensions; more are left out.
     pub fn pairs_and_whole(dims: usize) -> Vec<Self> {
-        let all: Vec<usize> = (0..dims).collect();
+        let all: Vec<usize> = (0..dims.min(MOST_DIMS)).collect();
         let mut groups: Vec<Self> =
             all.chunks(2).map(|pair| Self { dims: pair.to_vec(), weight: 1.0 }).collect();
         if dims > 2 {

@@ -12,7 +12,7 @@ use crate::domain::Domain;
 use crate::engine::{Engine, Pull};
 use crate::error::ConfigError;
 use crate::kernel::{Kernel, SpatialKernel, TemporalKernel};
-use crate::lattice::Extent;
+use crate::lattice::{Extent, MOST_DIMS};
 use crate::objective::{DimensionGroup, Objective, Role, Slicing, Term};
 use crate::table::SampleTable;
 
@@ -51,7 +51,8 @@ impl Config {
         Self {
             extent,
             dims,
-            domains: vec![Domain::Interval; dims],
+            // More dimensions are refused when the configuration is used; a list of them might not fit the memory.
+            domains: vec![Domain::Interval; dims.min(MOST_DIMS)],
             terms: Objective::blue_noise(&[kernel], Form::LevelSets, &groups, &extent),
             slicing: Slicing::default(),
             descent: Descent::default(),

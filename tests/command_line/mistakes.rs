@@ -56,8 +56,8 @@ fn sizes() {
         ("--width 4000000000", "stay at or below 4294967295"),
         ("--frames 18446744073709551615", "stay at or below 4294967295"),
         ("--frames 99999999999999999999", "too large"),
-        ("--dims 18446744073709551615", "is no number of dimensions: give at most 1024"),
-        ("--dims 1025", "'1025' is no number of dimensions"),
+        ("--dims 18446744073709551615", "give a value of at most 1024"),
+        ("--dims 1025", "dims is 1025: give a value of at most 1024"),
     ]);
 }
 

@@ -91,17 +91,20 @@ fn descents() {
     let sgd = |rate, momentum| Descent::Sgd { rate, momentum };
     let adam = |beta1, beta2, epsilon| Descent::Adam { rate: constant(0.1), beta1, beta2, epsilon };
     for (descent, words) in [
-        (sgd(constant(0.0), 0.9), "the first step size is 0: give a value above 0 and finite"),
-        (sgd(Schedule::cosine(1.0, -1.0), 0.9), "the last step size is -1: give a value above 0 and finite"),
+        (sgd(constant(0.0), 0.9), "the first step size is 0: give a value above 0, at most 1e6"),
+        (
+            sgd(Schedule::cosine(1.0, -1.0), 0.9),
+            "the last step size is -1: give a value above 0, at most 1e6",
+        ),
         (sgd(constant(0.1), 1.0), "momentum is 1: give a value in [0, 1)"),
         (adam(f64::NAN, 0.9, 1e-8), "beta1 is NaN: give a value in [0, 1)"),
         (adam(0.9, 1.5, 1e-8), "beta2 is 1.5: give a value in [0, 1)"),
-        (adam(0.9, 0.9, 0.0), "epsilon is 0: give a value above 0 and finite"),
+        (adam(0.9, 0.9, 0.0), "epsilon is 0: give a value from 1e-30 to 1e6"),
     ] {
         assert_eq!(refusal(|config| config.descent = descent), words);
     }
     let words = refusal(|config| config.balance = Schedule::geometric(1.0, f64::INFINITY));
-    assert_eq!(words, "the last step size is inf: give a value above 0 and finite");
+    assert_eq!(words, "the last step size is inf: give a value above 0, at most 1e6");
 }
 
 #[test]
