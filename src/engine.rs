@@ -9,10 +9,13 @@ use rayon::prelude::*;
 
 use crate::bank::Boundary;
 use crate::direction::Directions;
+use crate::draw::{Draw, Order};
 use crate::lanes::{self, Gather, LaneBuffers};
 use crate::law::{LaneLaw, Tabulated, Trapezoid};
 use crate::long::{self, LongBuffers, LongLaw};
-use crate::objective::{Draw, Objective, Order, PlannedTerm, Role};
+use crate::objective::Objective;
+use crate::plan::PlannedTerm;
+use crate::term::Role;
 
 /// Subsets per chunk: large enough to pay for handing it to a thread.
 const CHUNK: usize = 16;

@@ -83,6 +83,7 @@ mod demand;
 mod descent;
 mod direction;
 mod domain;
+mod draw;
 mod engine;
 mod error;
 mod kernel;
@@ -96,6 +97,7 @@ mod network;
 mod npy;
 mod objective;
 mod optimizer;
+mod plan;
 #[cfg(feature = "render")]
 pub mod render;
 #[cfg(feature = "render")]
@@ -103,6 +105,7 @@ pub mod sampler;
 mod stream;
 mod table;
 mod target;
+mod term;
 mod transport;
 
 pub use class::{Classes, Form};
@@ -113,7 +116,8 @@ pub use error::{ConfigError, FormatError, TableError};
 pub use kernel::{Kernel, SpatialKernel, SpatialTap, Tap, TemporalKernel};
 pub use lattice::{Extent, Site};
 pub use metadata::{BoundEstimate, BoundRecord, KernelTaps, Metadata, RunRecord};
-pub use objective::{DimensionGroup, Objective, Role, Slice, Slicing, Term};
+pub use objective::{Objective, Slice};
 pub use optimizer::{Config, Ended, Optimizer, RunReport, StepReport, Until};
 pub use table::SampleTable;
 pub use target::{Projected, Target};
+pub use term::{DimensionGroup, Role, Slicing, Term};

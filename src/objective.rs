@@ -1,95 +1,18 @@
 //! What is optimised: weighted terms, and the value and gradient of their slices.
 
-use std::collections::{BTreeMap, BTreeSet};
-
-use rand::RngExt;
-use rand::seq::SliceRandom;
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
-use crate::bank::Boundary;
-use crate::class::{Classes, Family, Form, Wanted};
+use crate::class::{Classes, Form, Wanted};
 use crate::demand::Demand;
-use crate::direction::{Directions, Slicer};
 use crate::domain::Domain;
 use crate::error::ConfigError;
 use crate::kernel::{Kernel, Tap};
-use crate::lanes::{LANES, LONGEST};
-use crate::lattice::{Extent, MOST_DIMS};
-use crate::network::Network;
-use crate::stream::{self, Purpose};
+use crate::lattice::Extent;
+use crate::plan::{PlannedTerm, classes};
 use crate::table::SampleTable;
 use crate::target::Target;
+use crate::term::{DimensionGroup, Role, Slicing, Term};
 use crate::transport::Workspace;
-
-/// One part of the objective: a family of classes, what their samples should resemble, and in which dimensions.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Term {
-    /// The filters.
-    pub classes: Classes,
-    /// The measure that a filtered subset should resemble.
-    pub target: Target,
-    /// The dimensions that this term sees, as a renderer consumes them together.
-    pub dims: Vec<usize>,
-    /// Share of the work: the number of slices that touch a sample is proportional to it, in the mean. Positive.
-    pub weight: f64,
-    /// How its slices move the samples.
-    pub role: Role,
-}
-
-/// How the slices of a term move the samples.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Role {
-    /// All such terms together are descended.
-    #[default]
-    Descend,
-    /// After each step of the descent, samples move all the way to their targets along the slices of the term
-    /// (times [`crate::Config::balance`]): alternating projections rather than a compromise of weights. Meant for few
-    /// slices of large classes, whose small but systematic displacements a compromise would drown.
-    Balance,
-}
-
-/// A group of dimensions that a renderer consumes together, with its share of the work.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct DimensionGroup {
-    /// Dimensions of the table, each once.
-    pub dims: Vec<usize>,
-    /// Weight relative to the other groups; positive.
-    pub weight: f64,
-}
-
-impl DimensionGroup {
-    /// Consecutive pairs of dimensions with weight 1 (a last odd one alone), and all dimensions together with half
-    /// that weight if there are more than two. No table has more than 1024 dimensions; more are left out.
-    pub fn pairs_and_whole(dims: usize) -> Vec<Self> {
-        let all: Vec<usize> = (0..dims.min(MOST_DIMS)).collect();
-        let mut groups: Vec<Self> =
-            all.chunks(2).map(|pair| Self { dims: pair.to_vec(), weight: 1.0 }).collect();
-        if dims > 2 {
-            groups.push(Self { dims: all, weight: 0.5 });
-        }
-        groups
-    }
-}
-
-/// How slices are drawn.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Slicing {
-    /// Directions per filtered subset, `1..=16`. Sixteen ride in the lanes of one vector; fewer cost the same.
-    pub directions: usize,
-    /// Share of the directions that lie on coordinate axes, in `[0, 1]`, for groups of at most `directions`
-    /// dimensions. More sharpens one-dimensional marginals at the cost of all else.
-    pub axis_share: f64,
-    /// Slices per step. `None`: a sixteenth of an epoch, where an epoch visits every pixel of every frame once.
-    pub batch_slices: Option<usize>,
-}
-
-impl Default for Slicing {
-    fn default() -> Self {
-        Self { directions: LANES, axis_share: 0.0, batch_slices: None }
-    }
-}
 
 /// One random draw of the objective: a class, a level, a direction.
 #[derive(Clone, Debug, PartialEq)]
@@ -117,43 +40,6 @@ pub struct Objective {
     pub(crate) dims: usize,
     pub(crate) domains: Vec<Domain>,
     pub(crate) terms: Vec<PlannedTerm>,
-}
-
-#[derive(Clone, Debug)]
-pub(crate) struct PlannedTerm {
-    pub spec: Term,
-    pub family: Family,
-    pub slicer: Slicer,
-    /// Networks and quantile cells of the subset sizes that are sorted in lanes. A subset of another size takes the
-    /// next larger network.
-    pub sizes: BTreeMap<usize, SizePlan>,
-    /// Subsets drawn per step; need not be whole.
-    pub rate: f64,
-}
-
-#[derive(Clone, Debug)]
-pub(crate) struct SizePlan {
-    pub network: Network,
-    /// Boundaries of the quantile cells, where laws are tabulated.
-    pub grid: Vec<Boundary>,
-}
-
-/// One subset of a step, before its samples and directions are looked up.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Draw {
-    pub term: u32,
-    pub member: u32,
-    pub level: f64,
-    pub phase: f64,
-    /// Term, and number within its step: names the subset's generator.
-    pub name: u64,
-}
-
-/// The order in which a term visits its classes: a new random permutation each epoch.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Order {
-    epoch: Option<u64>,
-    members: Vec<u32>,
 }
 
 /// Share of the work that goes to the whole table, and to its frames, relative to the kernels.
@@ -311,79 +197,6 @@ impl Objective {
         (if lattice > 0.0 { lattice } else { all }) / classes(&self.terms, self.extent) as f64
     }
 
-    /// The subsets that the terms of a role draw in a step. `orders` keeps the permutations between steps.
-    pub(crate) fn draw_subsets(
-        &self,
-        seed: u64,
-        step: u64,
-        role: Role,
-        orders: &mut Vec<Order>,
-        draws: &mut Vec<Draw>,
-    ) {
-        orders.resize_with(self.terms.len(), Order::default);
-        draws.clear();
-        for (index, (term, order)) in self.terms.iter().zip(orders).enumerate() {
-            if term.spec.role != role {
-                continue;
-            }
-            let begin = (step as f64 * term.rate) as u64;
-            let end = ((step + 1) as f64 * term.rate) as u64;
-            let mut generator = stream::generator(seed, Purpose::Strata, step, index as u64);
-            let turn: f64 = generator.random();
-            let members = term.family.visited() as u64;
-            for visit in begin..end {
-                order.turn_to(seed, index as u64, visit / members, &term.family);
-                let (i, strata) = ((visit - begin) as f64, (end - begin) as f64);
-                draws.push(Draw {
-                    term: index as u32,
-                    member: order.members[(visit % members) as usize],
-                    // Jittered strata of the level against a rotated golden-ratio sequence of the phase.
-                    level: ((i + generator.random::<f64>()) / strata).min(1.0 - f64::EPSILON),
-                    phase: (turn + i * GOLDEN_RATIO).fract(),
-                    name: (index as u64) << 32 | (visit - begin),
-                });
-            }
-        }
-    }
-
-    /// Directions and torus cuts of a subset.
-    pub(crate) fn draw_directions(
-        &self,
-        seed: u64,
-        step: u64,
-        draw: &Draw,
-        directions: &mut Directions,
-        cut: &mut Vec<Option<f32>>,
-    ) {
-        let term = &self.terms[draw.term as usize];
-        let mut generator = stream::generator(seed, Purpose::Subset, step, draw.name);
-        term.slicer.draw(draw.phase, &mut generator, directions);
-        cut.clear();
-        cut.extend(term.spec.dims.iter().map(|&dim| match self.domains[dim] {
-            Domain::Interval => None,
-            Domain::Torus => Some(generator.random()),
-        }));
-    }
-
-    /// The slices that the terms of a role draw in step `step` of an optimisation with this seed, one by one.
-    pub fn draw(&self, seed: u64, step: u64, role: Role) -> Vec<Slice> {
-        let (mut orders, mut draws) = (Vec::new(), Vec::new());
-        let (mut directions, mut cut) = (Directions::default(), Vec::new());
-        self.draw_subsets(seed, step, role, &mut orders, &mut draws);
-        let mut slices = Vec::new();
-        for draw in &draws {
-            self.draw_directions(seed, step, draw, &mut directions, &mut cut);
-            slices.extend((0..directions.count).map(|lane| Slice {
-                term: draw.term as usize,
-                member: draw.member as usize,
-                level: draw.level,
-                direction: directions.theta.iter().map(|row| f64::from(row[lane])).collect(),
-                cut: cut.iter().map(|cut| f64::from(cut.unwrap_or(0.0))).collect(),
-            }));
-        }
-        slices
-    }
-
     /// Mean over `slices` of `(n / N) W2²` and its gradient with respect to every coordinate, in `f64`.
     ///
     /// `points` are the coordinates of all samples in the order of [`crate::SampleTable`], in `[0, 1)`; the gradient has
@@ -505,94 +318,4 @@ struct Moved {
     cost: f64,
     samples: Vec<u32>,
     displacements: Vec<f64>,
-}
-
-/// Fractional part of the golden ratio: multiples of it are evenly spread for any count (Weyl, van der Corput).
-const GOLDEN_RATIO: f64 = 0.618_033_988_749_894_8;
-
-impl Order {
-    fn turn_to(&mut self, seed: u64, term: u64, epoch: u64, family: &Family) {
-        if self.epoch != Some(epoch) {
-            self.epoch = Some(epoch);
-            family.list_visited(&mut self.members);
-            self.members.shuffle(&mut stream::generator(seed, Purpose::Order, epoch, term));
-        }
-    }
-}
-
-impl Slicing {
-    fn validate(&self) -> Result<(), ConfigError> {
-        let out_of_range = |name, value, expected| Err(ConfigError::OutOfRange { name, value, expected });
-        if !(1..=LANES).contains(&self.directions) {
-            return out_of_range("directions per subset", self.directions as f64, "from 1 to 16");
-        }
-        if !(0.0..=1.0).contains(&self.axis_share) {
-            return out_of_range("the axis share", self.axis_share, "in [0, 1]");
-        }
-        if self.batch_slices == Some(0) {
-            return out_of_range("the batch size", 0.0, "of at least 1 slice");
-        }
-        Ok(())
-    }
-}
-
-impl PlannedTerm {
-    fn new(
-        index: usize,
-        term: &Term,
-        extent: Extent,
-        dims: usize,
-        slicing: &Slicing,
-        wanted: Wanted,
-    ) -> Result<Self, ConfigError> {
-        if !(term.weight > 0.0 && term.weight.is_finite()) {
-            let expected = "above 0 and finite";
-            return Err(ConfigError::OutOfRange {
-                name: "the weight of a term",
-                value: term.weight,
-                expected,
-            });
-        }
-        if term.dims.is_empty() {
-            return Err(ConfigError::EmptyGroup { group: index });
-        }
-        for (place, &dimension) in term.dims.iter().enumerate() {
-            if dimension >= dims {
-                return Err(ConfigError::NoSuchDimension { group: index, dimension, dims });
-            }
-            if term.dims[..place].contains(&dimension) {
-                return Err(ConfigError::RepeatedDimension { group: index, dimension });
-            }
-        }
-        let family = Family::new(&term.classes, extent, wanted)?;
-        let sizes = family.sizes();
-        // A subset that is not sorted in lanes gains nothing from sharing its directions.
-        let long = sizes[0] > LONGEST;
-        let per_subset = if long { 1 } else { slicing.directions };
-        let slicer = Slicer::new(term.dims.len(), per_subset, slicing.axis_share, &term.target);
-        let in_lanes = !family.is_weighted() && slicer.per_subset() > 1;
-        let sizes: BTreeSet<usize> = match sizes.last() {
-            _ if !in_lanes => BTreeSet::new(),
-            Some(&largest) if family.is_partial() => partial_sizes(largest.min(LONGEST)).collect(),
-            _ => sizes.into_iter().filter(|&size| size <= LONGEST).collect(),
-        };
-        let plan = |n: usize| {
-            let grid = if slicer.bank().is_some() { Boundary::grid(n).collect() } else { Vec::new() };
-            (n, SizePlan { network: Network::new(n), grid })
-        };
-        let sizes = sizes.into_iter().map(plan).collect();
-        Ok(Self { spec: term.clone(), family, slicer, sizes, rate: 0.0 })
-    }
-}
-
-/// Pixels and frames that the kernels visit; all of them if there is no kernel.
-fn classes(terms: &[PlannedTerm], extent: Extent) -> usize {
-    let visited = terms.iter().filter(|term| term.family.taps().is_some()).map(|term| term.family.visited());
-    visited.max().unwrap_or(extent.sites())
-}
-
-/// Sizes to plan for where any up to `largest` may occur: all of the small ones, then steps of a tenth.
-fn partial_sizes(largest: usize) -> impl Iterator<Item = usize> {
-    let next = |&size: &usize| (size < usize::MAX / 2).then(|| size + (size / 10).max(1));
-    std::iter::successors(Some(1), next).take_while(move |&size| size < largest).chain([largest])
 }

@@ -13,8 +13,9 @@ use crate::engine::{Engine, Pull};
 use crate::error::ConfigError;
 use crate::kernel::{Kernel, SpatialKernel, TemporalKernel};
 use crate::lattice::{Extent, MOST_DIMS};
-use crate::objective::{DimensionGroup, Objective, Role, Slicing, Term};
+use crate::objective::Objective;
 use crate::table::SampleTable;
+use crate::term::{DimensionGroup, Role, Slicing, Term};
 
 /// Everything that determines a table, but for the length of the run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,0 +1,117 @@
+//! The random slices of a step, named by seed, step and place, never by thread.
+
+use rand::RngExt;
+use rand::seq::SliceRandom;
+
+use crate::class::Family;
+use crate::direction::Directions;
+use crate::domain::Domain;
+use crate::objective::{Objective, Slice};
+use crate::stream::{self, Purpose};
+use crate::term::Role;
+
+/// One subset of a step, before its samples and directions are looked up.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Draw {
+    pub term: u32,
+    pub member: u32,
+    pub level: f64,
+    pub phase: f64,
+    /// Term, and number within its step: names the subset's generator.
+    pub name: u64,
+}
+
+/// The order in which a term visits its classes: a new random permutation each epoch.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Order {
+    epoch: Option<u64>,
+    members: Vec<u32>,
+}
+
+/// Fractional part of the golden ratio: multiples of it are evenly spread for any count (Weyl, van der Corput).
+const GOLDEN_RATIO: f64 = 0.618_033_988_749_894_8;
+
+impl Objective {
+    /// The subsets that the terms of a role draw in a step. `orders` keeps the permutations between steps.
+    pub(crate) fn draw_subsets(
+        &self,
+        seed: u64,
+        step: u64,
+        role: Role,
+        orders: &mut Vec<Order>,
+        draws: &mut Vec<Draw>,
+    ) {
+        orders.resize_with(self.terms.len(), Order::default);
+        draws.clear();
+        for (index, (term, order)) in self.terms.iter().zip(orders).enumerate() {
+            if term.spec.role != role {
+                continue;
+            }
+            let begin = (step as f64 * term.rate) as u64;
+            let end = ((step + 1) as f64 * term.rate) as u64;
+            let mut generator = stream::generator(seed, Purpose::Strata, step, index as u64);
+            let turn: f64 = generator.random();
+            let members = term.family.visited() as u64;
+            for visit in begin..end {
+                order.turn_to(seed, index as u64, visit / members, &term.family);
+                let (i, strata) = ((visit - begin) as f64, (end - begin) as f64);
+                draws.push(Draw {
+                    term: index as u32,
+                    member: order.members[(visit % members) as usize],
+                    // Jittered strata of the level against a rotated golden-ratio sequence of the phase.
+                    level: ((i + generator.random::<f64>()) / strata).min(1.0 - f64::EPSILON),
+                    phase: (turn + i * GOLDEN_RATIO).fract(),
+                    name: (index as u64) << 32 | (visit - begin),
+                });
+            }
+        }
+    }
+
+    /// Directions and torus cuts of a subset.
+    pub(crate) fn draw_directions(
+        &self,
+        seed: u64,
+        step: u64,
+        draw: &Draw,
+        directions: &mut Directions,
+        cut: &mut Vec<Option<f32>>,
+    ) {
+        let term = &self.terms[draw.term as usize];
+        let mut generator = stream::generator(seed, Purpose::Subset, step, draw.name);
+        term.slicer.draw(draw.phase, &mut generator, directions);
+        cut.clear();
+        cut.extend(term.spec.dims.iter().map(|&dim| match self.domains[dim] {
+            Domain::Interval => None,
+            Domain::Torus => Some(generator.random()),
+        }));
+    }
+
+    /// The slices that the terms of a role draw in step `step` of an optimisation with this seed, one by one.
+    pub fn draw(&self, seed: u64, step: u64, role: Role) -> Vec<Slice> {
+        let (mut orders, mut draws) = (Vec::new(), Vec::new());
+        let (mut directions, mut cut) = (Directions::default(), Vec::new());
+        self.draw_subsets(seed, step, role, &mut orders, &mut draws);
+        let mut slices = Vec::new();
+        for draw in &draws {
+            self.draw_directions(seed, step, draw, &mut directions, &mut cut);
+            slices.extend((0..directions.count).map(|lane| Slice {
+                term: draw.term as usize,
+                member: draw.member as usize,
+                level: draw.level,
+                direction: directions.theta.iter().map(|row| f64::from(row[lane])).collect(),
+                cut: cut.iter().map(|cut| f64::from(cut.unwrap_or(0.0))).collect(),
+            }));
+        }
+        slices
+    }
+}
+
+impl Order {
+    fn turn_to(&mut self, seed: u64, term: u64, epoch: u64, family: &Family) {
+        if self.epoch != Some(epoch) {
+            self.epoch = Some(epoch);
+            family.list_visited(&mut self.members);
+            self.members.shuffle(&mut stream::generator(seed, Purpose::Order, epoch, term));
+        }
+    }
+}
