@@ -199,3 +199,6 @@ impl Chunk {
         }
     }
 }
+
+#[cfg(test)]
+mod stress;
