@@ -218,3 +218,6 @@ impl Chunk {
         }
     }
 }
+
+#[cfg(test)]
+mod stress;

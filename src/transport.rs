@@ -74,3 +74,6 @@ impl Workspace {
         distance
     }
 }
+
+#[cfg(test)]
+mod tests;
