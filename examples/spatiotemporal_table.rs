@@ -5,6 +5,7 @@
 #[path = "common/temporal.rs"]
 mod temporal;
 
+use std::io::Write;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -14,7 +15,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use clap::{Parser, ValueEnum};
 use fsot::{
     BoundRecord, Config, Descent, DimensionGroup, Domain, Ended, Extent, Form, Kernel, KernelTaps, Metadata,
-    Objective, Optimizer, RunRecord, SampleTable, SpatialKernel, TemporalKernel, Until, metrics,
+    Objective, Optimizer, RunRecord, RunReport, SampleTable, SpatialKernel, TemporalKernel, Until, metrics,
 };
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
@@ -148,38 +149,46 @@ fn optimize(arguments: &Arguments) -> Result<(), Failure> {
         None => None,
     };
     let seconds = report.elapsed.as_secs_f64();
-    let table = optimizer.table();
+    let ended_early = report.ended != Ended::Finished;
     let configuration = serde_json::to_value(optimizer.config())?;
-    let mut metadata = Metadata::new(&table, arguments.seed, configuration);
     let objective = optimizer.objective();
-    metadata.kernels = (0..objective.terms().count())
-        .filter_map(|term| Some(KernelTaps { term, taps: objective.taps(term)?.to_vec() }))
-        .collect();
-    metadata.bound = bound;
-    metadata.run = RunRecord { slices_per_class: report.slices_per_class, steps: report.steps, seconds };
+    let taps = |term| Some(KernelTaps { term, taps: objective.taps(term)?.to_vec() });
+    let kernels = (0..objective.terms().count()).filter_map(taps).collect();
+    let table = optimizer.into_table();
+    let RunReport { slices_per_class, steps, .. } = report;
+    let metadata = Metadata {
+        kernels,
+        bound,
+        run: RunRecord { slices_per_class, ended_early, steps, seconds },
+        ..Metadata::new(&table, arguments.seed, configuration)
+    };
     table.save_with(&arguments.out, &metadata)?;
 
-    if !arguments.quiet {
-        let stopped = if report.ended == Ended::Stopped { ", stopped early" } else { "" };
-        println!(
-            "{seconds:.2} s, {} slices ({:.2} million/s), --slices-per-class {}{stopped}",
-            report.slices,
-            report.slices as f64 / seconds / 1e6,
-            report.slices_per_class,
-        );
-        if let Some(BoundRecord { before, after }) = bound {
-            println!(
-                "bound {:.5} ± {:.5} → {:.5} ± {:.5}, {:.3} ± {:.3} of white noise",
-                before.value,
-                before.standard_error,
-                after.value,
-                after.standard_error,
-                after.ratio_to_white_noise,
-                after.ratio_standard_error,
-            );
-        }
-        println!("{}, {}", arguments.out.display(), Metadata::path_beside(&arguments.out).display());
+    if arguments.quiet {
+        return Ok(());
     }
+    // A reader that has gone away is an error like any other, not a panic.
+    let mut out = std::io::stdout().lock();
+    let rate = report.slices as f64 / seconds / 1e6;
+    write!(out, "{seconds:.2} s, {} slices ({rate:.2} million/s), ", report.slices)?;
+    if ended_early {
+        writeln!(out, "stopped after {steps} steps of --slices-per-class {slices_per_class}")?;
+    } else {
+        writeln!(out, "--slices-per-class {slices_per_class}")?;
+    }
+    if let Some(BoundRecord { before, after }) = bound {
+        writeln!(
+            out,
+            "bound {:.5} ± {:.5} → {:.5} ± {:.5}, {:.3} ± {:.3} of white noise",
+            before.value,
+            before.standard_error,
+            after.value,
+            after.standard_error,
+            after.ratio_to_white_noise,
+            after.ratio_standard_error,
+        )?;
+    }
+    writeln!(out, "{}, {}", arguments.out.display(), Metadata::path_beside(&arguments.out).display())?;
     Ok(())
 }
 

@@ -15,7 +15,7 @@ use rand::RngExt;
 use rand_distr::StandardNormal;
 use rayon::prelude::*;
 
-use crate::lanes::{LANES, Row};
+use crate::row::{LANES, Row};
 use crate::stream::{self, Purpose};
 use crate::target::Target;
 

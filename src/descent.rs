@@ -4,8 +4,8 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::domain::Domain;
-use crate::engine::Pull;
 use crate::error::ConfigError;
+use crate::pull::Pull;
 
 /// How a step moves the samples.
 ///

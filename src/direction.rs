@@ -3,7 +3,7 @@
 use rand::{Rng, RngExt};
 
 use crate::bank::Bank;
-use crate::lanes::{LANES, Row};
+use crate::row::{LANES, Row};
 use crate::target::Target;
 
 /// Draws the directions of subsets in one number of dimensions.

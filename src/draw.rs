@@ -47,8 +47,10 @@ impl Objective {
             if term.spec.role != role {
                 continue;
             }
-            let begin = (step as f64 * term.rate) as u64;
-            let end = ((step + 1) as f64 * term.rate) as u64;
+            // Terms that draw less than once a step take turns.
+            let phase = ((index + 1) as f64 * GOLDEN_RATIO).fract();
+            let begin = (step as f64 * term.rate + phase) as u64;
+            let end = ((step + 1) as f64 * term.rate + phase) as u64;
             let mut generator = stream::generator(seed, Purpose::Strata, step, index as u64);
             let turn: f64 = generator.random();
             let members = term.family.visited() as u64;

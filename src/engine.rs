@@ -2,7 +2,9 @@
 //!
 //! The subsets of a step are cut into chunks of fixed size; workers transport them into buffers of their own, and
 //! the displacements are then added to the samples one chunk after the other. No result depends on how many
-//! threads there are. Nothing is allocated once the buffers have grown to their size.
+//! threads there are. Buffers are reused from step to step.
+
+use std::sync::{Mutex, PoisonError};
 
 use pulp::{Arch, NullaryFnOnce};
 use rayon::prelude::*;
@@ -15,51 +17,46 @@ use crate::law::{LaneLaw, Tabulated, Trapezoid};
 use crate::long::{self, LongBuffers, LongLaw};
 use crate::objective::Objective;
 use crate::plan::PlannedTerm;
+use crate::pull::Pull;
 use crate::term::Role;
 
 /// Subsets per chunk: large enough to pay for handing it to a thread.
 const CHUNK: usize = 16;
 /// Chunks in flight: bounds the memory of a large step.
 const IN_FLIGHT: usize = 128;
+/// Samples that the subsets of a chunk should not exceed in the mean, unless a single one does.
+const CHUNK_TOUCHES: usize = 1 << 13;
 
-/// Sum of displacements along the directions of the slices, and how many slices there were, per coordinate.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Pull {
-    /// Sum of `factor · mass · displacement · theta` over slices; the factor is the number of dimensions of the slice's
-    /// group where the term is descended, and 1 where it is balanced.
-    pub sums: Vec<f32>,
-    /// Sum of `mass` over the slices that saw the coordinate.
-    pub hits: Vec<f32>,
-    /// Slices of the step.
-    pub slices: u64,
-    /// Sum over slices and samples of `mass · displacement²`, and of `mass`.
-    pub squares: f64,
-    /// See `squares`.
-    pub mass: f64,
-}
-
-/// Workers' buffers and the order of visits.
+/// Buffers, and the order of visits.
 pub(crate) struct Engine {
     arch: Arch,
     orders: Vec<Order>,
     draws: Vec<Draw>,
     chunks: Vec<Chunk>,
+    /// What workers need while they transport; as many as there are workers.
+    scratch: Mutex<Vec<Scratch>>,
 }
 
 #[derive(Default)]
-struct Chunk {
+struct Scratch {
     directions: Directions,
     cut: Vec<Option<f32>>,
     subset: Vec<u32>,
     weights: Vec<f64>,
-    samples: Vec<u32>,
-    moves: Vec<f32>,
-    /// Masses of the samples of weighted terms.
-    masses: Vec<f32>,
     /// Quantile cells of a subset whose size is not planned.
     grid: Vec<Boundary>,
     lanes: LaneBuffers,
     long: LongBuffers,
+}
+
+/// What the subsets of a chunk pull, in the order of the draws.
+
+#[derive(Default)]
+struct Chunk {
+    samples: Vec<u32>,
+    moves: Vec<f32>,
+    /// Masses of the samples of weighted terms.
+    masses: Vec<f32>,
     slices: u64,
     squares: f64,
     mass: f64,
@@ -68,7 +65,13 @@ struct Chunk {
 
 impl Engine {
     pub(crate) fn new() -> Self {
-        Self { arch: Arch::new(), orders: Vec::new(), draws: Vec::new(), chunks: Vec::new() }
+        Self {
+            arch: Arch::new(),
+            orders: Vec::new(),
+            draws: Vec::new(),
+            chunks: Vec::new(),
+            scratch: Mutex::default(),
+        }
     }
 
     /// Transports the slices that the terms of a role draw in a step from `points` and adds what they pull to `pull`,
@@ -80,17 +83,27 @@ impl Engine {
         points: &[f32],
         pull: &mut Pull,
     ) {
-        let Self { arch, orders, draws, chunks } = self;
+        let Self { arch, orders, draws, chunks, scratch } = self;
+        let scratch = &*scratch;
         objective.draw_subsets(seed, step, role, orders, draws);
         (pull.slices, pull.squares, pull.mass) = (0, 0.0, 0.0);
-        for draws in draws.chunks(CHUNK * IN_FLIGHT) {
-            let used = draws.len().div_ceil(CHUNK);
+        // Fewer large subsets at a time, so that memory is bounded by samples and not by slices times samples.
+        let sizes =
+            objective.terms.iter().filter(|term| term.spec.role == role).map(|term| term.family.mean_size());
+        let largest = sizes.fold(1.0, f64::max) as usize;
+        let per_chunk = (CHUNK_TOUCHES / largest).clamp(1, CHUNK);
+        let in_flight = (CHUNK_TOUCHES * IN_FLIGHT / (largest * per_chunk)).clamp(2, IN_FLIGHT);
+        for draws in draws.chunks(per_chunk * in_flight) {
+            let used = draws.len().div_ceil(per_chunk);
             chunks.resize_with(chunks.len().max(used), Chunk::default);
             let chunks = &mut chunks[..used];
-            chunks.par_iter_mut().zip(draws.par_chunks(CHUNK)).for_each(|(chunk, draws)| {
-                arch.dispatch(Transport { objective, seed, step, points, draws, chunk });
+            chunks.par_iter_mut().zip(draws.par_chunks(per_chunk)).for_each(|(chunk, draws)| {
+                let pooled = scratch.lock().unwrap_or_else(PoisonError::into_inner).pop();
+                let mut mine = pooled.unwrap_or_default();
+                arch.dispatch(Transport { objective, seed, step, points, draws, chunk, scratch: &mut mine });
+                scratch.lock().unwrap_or_else(PoisonError::into_inner).push(mine);
             });
-            for (chunk, draws) in chunks.iter().zip(draws.chunks(CHUNK)) {
+            for (chunk, draws) in chunks.iter().zip(draws.chunks(per_chunk)) {
                 chunk.add_to(objective, draws, pull);
             }
         }
@@ -105,6 +118,7 @@ struct Transport<'a> {
     points: &'a [f32],
     draws: &'a [Draw],
     chunk: &'a mut Chunk,
+    scratch: &'a mut Scratch,
 }
 
 impl NullaryFnOnce for Transport<'_> {
@@ -112,7 +126,7 @@ impl NullaryFnOnce for Transport<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { objective, seed, step, points, draws, chunk } = self;
+        let Self { objective, seed, step, points, draws, chunk, scratch } = self;
         chunk.samples.clear();
         chunk.moves.clear();
         chunk.masses.clear();
@@ -120,11 +134,11 @@ impl NullaryFnOnce for Transport<'_> {
         (chunk.slices, chunk.squares, chunk.mass) = (0, 0.0, 0.0);
         for draw in draws {
             let term = &objective.terms[draw.term as usize];
-            objective.draw_directions(seed, step, draw, &mut chunk.directions, &mut chunk.cut);
-            term.family.select(draw.member as usize, draw.level, &mut chunk.subset);
-            term.family.weigh(draw.member as usize, &mut chunk.weights);
-            chunk.transport(objective, term, points);
-            chunk.samples.extend_from_slice(&chunk.subset);
+            objective.draw_directions(seed, step, draw, &mut scratch.directions, &mut scratch.cut);
+            term.family.select(draw.member as usize, draw.level, &mut scratch.subset);
+            term.family.weigh(draw.member as usize, &mut scratch.weights);
+            chunk.transport(objective, term, points, scratch);
+            chunk.samples.extend_from_slice(&scratch.subset);
             chunk.ends.push(chunk.samples.len());
         }
     }
@@ -133,18 +147,25 @@ impl NullaryFnOnce for Transport<'_> {
 impl Chunk {
     /// Transports the selected subset along its directions and appends the moves.
     #[inline(always)]
-    fn transport(&mut self, objective: &Objective, term: &PlannedTerm, points: &[f32]) {
-        let (n, dims) = (self.subset.len(), &term.spec.dims);
+    fn transport(
+        &mut self,
+        objective: &Objective,
+        term: &PlannedTerm,
+        points: &[f32],
+        scratch: &mut Scratch,
+    ) {
+        let Scratch { directions, cut, subset, weights, grid, lanes, long } = scratch;
+        let (n, dims) = (subset.len(), &term.spec.dims);
         let first = self.moves.len();
         self.moves.resize(first + n * dims.len(), 0.0);
         let moves = &mut self.moves[first..];
-        let gather = Gather { samples: &self.subset, points, stride: objective.dims, dims, cut: &self.cut };
-        let Directions { count, theta, block, on_axis } = &self.directions;
+        let gather = Gather { samples: subset, points, stride: objective.dims, dims, cut };
+        let Directions { count, theta, block, on_axis } = &*directions;
         let block = term.slicer.bank().map(|bank| bank.block(*block));
         self.slices += *count as u64;
-        let weights = term.family.is_weighted().then_some(self.weights.as_slice());
+        let weights = term.family.is_weighted().then_some(weights.as_slice());
         self.mass += *count as f64 * weights.map_or(n as f64, |weights| weights.iter().sum());
-        self.masses.extend(self.weights.iter().map(|&weight| weight as f32));
+        self.masses.extend(weights.into_iter().flatten().map(|&weight| weight as f32));
         if n == 0 {
             return; // none of the class's samples at this level is demanded
         }
@@ -153,14 +174,14 @@ impl Chunk {
                 None => LaneLaw::Trapezoid(Trapezoid::new(theta)),
                 Some(block) => {
                     if size != n {
-                        self.grid.clear();
-                        self.grid.extend(Boundary::grid(n));
+                        grid.clear();
+                        grid.extend(Boundary::grid(n));
                     }
-                    let grid = if size == n { &plan.grid } else { &self.grid };
-                    LaneLaw::Tabulated(Tabulated::new(&self.directions, block, grid))
+                    let grid = if size == n { &plan.grid } else { grid };
+                    LaneLaw::Tabulated(Tabulated::new(directions, block, grid))
                 }
             };
-            let squares = lanes::transport(&gather, theta, &law, &plan.network, &mut self.lanes, moves);
+            let squares = lanes::transport(&gather, theta, &law, &plan.network, lanes, moves);
             self.squares += f64::from(squares);
             return;
         }
@@ -180,7 +201,7 @@ impl Chunk {
                     LongLaw::Closed(term.spec.target.project(&direction))
                 }
             };
-            self.squares += long::transport(&gather, component, &law, weights, &mut self.long, moves);
+            self.squares += long::transport(&gather, component, &law, weights, long, moves);
         }
     }
 

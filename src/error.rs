@@ -15,7 +15,7 @@ pub enum ConfigError {
         axis: &'static str,
     },
     /// The table has more values than can be numbered.
-    #[error("the table would hold {values} values: stay at or below 4294967295 (2^32 - 1)")]
+    #[error("the table would hold {values} values: stay at or below 2147483647 (2^31 - 1)")]
     TooLarge {
         /// Number of values asked for (saturating).
         values: u64,

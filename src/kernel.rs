@@ -59,7 +59,7 @@ pub enum TemporalKernel {
     },
     /// Exponential moving average `(1 - alpha)^k`, the history blend of temporal antialiasing.
     Ema {
-        /// Weight of the current frame, in `(0, 1]`.
+        /// Weight of the current frame, in `[1e-6, 1]`.
         alpha: f64,
     },
     /// Equal weights on this many frames.
@@ -211,8 +211,9 @@ impl Kernel {
     /// that level sets keep the kernel's symmetry.
     ///
     /// # Errors
-    /// A parameter outside its documented range; a negative or non-finite weight; no positive weight.
+    /// An empty extent; a parameter outside its documented range; a negative or non-finite weight; no positive weight.
     pub fn taps(&self, extent: &Extent) -> Result<Vec<Tap>, ConfigError> {
+        extent.validate(1)?;
         if !(0.0..1.0).contains(&self.truncation) {
             return Err(out_of_range("truncation", self.truncation, "in [0, 1)"));
         }

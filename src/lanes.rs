@@ -7,12 +7,7 @@
 
 use crate::law::LaneLaw;
 use crate::network::Network;
-
-/// Slices that travel together.
-pub(crate) const LANES: usize = 16;
-
-/// One number per lane.
-pub(crate) type Row = [f32; LANES];
+use crate::row::{LANES, Row};
 
 /// Largest subset that is sorted in lanes; above it the network's O(n log² n) loses to a general sort.
 pub(crate) const LONGEST: usize = 1024;

@@ -21,7 +21,7 @@ pub struct Extent {
 }
 
 /// Most dimensions of a sample: directions take time and memory by the square of them and more.
-pub(crate) const MOST_DIMS: usize = 1024;
+pub(crate) const MOST_DIMS: usize = 64;
 
 /// Position of a pixel of one frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -67,7 +67,7 @@ impl Extent {
         }
     }
 
-    /// Checks that no axis is empty, that there are at most [`MOST_DIMS`] dimensions, and that `samples * dims` values can be numbered with 32 bits.
+    /// Checks that no axis is empty, that there are at most [`MOST_DIMS`] dimensions, and that `samples * dims` values can be numbered with 31 bits.
     pub(crate) fn validate(&self, dims: usize) -> Result<(), ConfigError> {
         let axes = [
             ("frames", self.frames),
@@ -84,10 +84,11 @@ impl Extent {
             values = values.saturating_mul(len as u64);
         }
         if dims > MOST_DIMS {
-            let expected = "of at most 1024";
+            let expected = "of at most 64";
             return Err(ConfigError::OutOfRange { name: "dims", value: dims as f64, expected });
         }
-        if values > u64::from(u32::MAX) {
+        // Half of what 32 bits number, so that an offset may be added before it wraps.
+        if values > i32::MAX as u64 {
             return Err(ConfigError::TooLarge { values });
         }
         Ok(())

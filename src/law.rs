@@ -6,7 +6,7 @@
 
 use crate::bank::{Block, Boundary};
 use crate::direction::Directions;
-use crate::lanes::{LANES, Row};
+use crate::row::{LANES, Row};
 
 /// The laws of one group of directions.
 pub(crate) enum LaneLaw<'a> {

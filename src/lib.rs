@@ -64,7 +64,7 @@
 //!   platforms sines, cosines and powers of the standard library may round differently in the last bit, and a run
 //!   amplifies that; tables then differ, their quality doesn't.
 //! * Values lie in `[0, 1)`; 1.0 never appears.
-//! * A step allocates nothing once its buffers have grown; memory stays below a dozen times the table.
+//! * Steps reuse their buffers; memory stays below a dozen times the table, plus a few MiB.
 //! * Bad input is refused with a typed error ([`ConfigError`], [`TableError`]) before anything is computed or written.
 //!   The library prints nothing.
 //!
@@ -98,8 +98,10 @@ mod npy;
 mod objective;
 mod optimizer;
 mod plan;
+mod pull;
 #[cfg(feature = "render")]
 pub mod render;
+mod row;
 #[cfg(feature = "render")]
 pub mod sampler;
 mod stream;

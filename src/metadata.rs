@@ -91,8 +91,11 @@ pub struct BoundEstimate {
 /// How much work made a table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RunRecord {
-    /// Slices per pixel and frame over the whole run.
+    /// Slices per pixel and frame that the run was planned for; with `steps` the length of its schedules.
     pub slices_per_class: u64,
+    /// Whether the run was broken off or converged before all of them were drawn.
+    #[serde(default)]
+    pub ended_early: bool,
     /// Steps of the descent.
     pub steps: u64,
     /// Wall-clock time in seconds.

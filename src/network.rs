@@ -1,6 +1,6 @@
 //! Oblivious sorting of many short lists at once.
 
-use crate::lanes::LANES;
+use crate::row::LANES;
 
 /// Batcher's odd-even merge exchange for lists of one length (Knuth, The Art of Computer Programming, volume 3,
 /// Algorithm 5.2.2M): the places to compare do not depend on the data, so that all lanes sort together.

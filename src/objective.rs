@@ -217,7 +217,8 @@ impl Objective {
         let scale = 1.0 / (self.extent.samples() as f64 * slices.len().max(1) as f64);
         // Chunks bound the memory; their results are added in order, whatever the number of threads.
         let (mut value, mut gradient) = (0.0, vec![0.0; points.len()]);
-        for slices in slices.chunks(4096) {
+        let largest = self.terms.iter().flat_map(|term| term.family.sizes()).max().unwrap_or(1);
+        for slices in slices.chunks((MOST_TOUCHES / largest).clamp(1, 4096)) {
             let moved: Vec<_> = slices.par_iter().map(|slice| self.transport(points, slice)).collect();
             for (slice, moved) in slices.iter().zip(moved) {
                 let dims = &self.terms[slice.term].spec.dims;
@@ -251,15 +252,21 @@ impl Objective {
     }
 
     /// Projections of the listed samples on the slice's direction, after cutting open the torus dimensions.
-    pub(crate) fn project(&self, points: &[f64], slice: &Slice, samples: &[u32], projections: &mut Vec<f64>) {
+    pub(crate) fn project<T: Copy + Into<f64>>(
+        &self,
+        points: &[T],
+        slice: &Slice,
+        samples: &[u32],
+        projections: &mut Vec<f64>,
+    ) {
         let dims = &self.terms[slice.term].spec.dims;
         projections.clear();
         projections.extend(samples.iter().map(|&sample| {
             let point = &points[sample as usize * self.dims..][..self.dims];
             let along = |(i, &dim): (usize, &usize)| {
                 let value = match self.domains[dim] {
-                    Domain::Interval => point[dim],
-                    Domain::Torus => (point[dim] - slice.cut[i]).rem_euclid(1.0),
+                    Domain::Interval => point[dim].into(),
+                    Domain::Torus => (point[dim].into() - slice.cut[i]).rem_euclid(1.0),
                 };
                 value * slice.direction[i]
             };
@@ -313,6 +320,9 @@ impl Objective {
         Ok(())
     }
 }
+
+/// Samples of the slices that are transported before their displacements are added.
+const MOST_TOUCHES: usize = 1 << 20;
 
 struct Moved {
     cost: f64,

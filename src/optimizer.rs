@@ -9,11 +9,12 @@ use crate::class::Form;
 use crate::demand::Demand;
 use crate::descent::{self, Descent, Schedule, Walker};
 use crate::domain::Domain;
-use crate::engine::{Engine, Pull};
+use crate::engine::Engine;
 use crate::error::ConfigError;
 use crate::kernel::{Kernel, SpatialKernel, TemporalKernel};
 use crate::lattice::{Extent, MOST_DIMS};
 use crate::objective::Objective;
+use crate::pull::Pull;
 use crate::table::SampleTable;
 use crate::term::{DimensionGroup, Role, Slicing, Term};
 
@@ -285,6 +286,8 @@ impl Optimizer {
             }
         }
         report.elapsed = begin.elapsed();
+        // The buffers of a run are as large as its largest subset; nobody needs them until the next.
+        self.engine = Engine::new();
         Ok(report)
     }
 

@@ -4,9 +4,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::class::Classes;
 use crate::error::ConfigError;
-use crate::lanes::LANES;
 use crate::lattice::MOST_DIMS;
+use crate::row::LANES;
 use crate::target::Target;
+
+/// Most slices of a step.
+const MOST_SLICES: usize = i32::MAX as usize;
 
 /// One part of the objective: a family of classes, what their samples should resemble, and in which dimensions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -47,7 +50,7 @@ pub struct DimensionGroup {
 
 impl DimensionGroup {
     /// Consecutive pairs of dimensions with weight 1 (a last odd one alone), and all dimensions together with half
-    /// that weight if there are more than two. No table has more than 1024 dimensions; more are left out.
+    /// that weight if there are more than two. No table has more than 64 dimensions; more are left out.
     pub fn pairs_and_whole(dims: usize) -> Vec<Self> {
         let all: Vec<usize> = (0..dims.min(MOST_DIMS)).collect();
         let mut groups: Vec<Self> =
@@ -64,8 +67,9 @@ impl DimensionGroup {
 pub struct Slicing {
     /// Directions per filtered subset, `1..=16`. Sixteen ride in the lanes of one vector; fewer cost the same.
     pub directions: usize,
-    /// Share of the directions that lie on coordinate axes, in `[0, 1]`, for groups of at most `directions`
-    /// dimensions. More sharpens one-dimensional marginals at the cost of all else.
+    /// Share of the directions that lie on coordinate axes, in `[0, 1]`. Axes replace whole frames: there are none for
+    /// groups of more than `directions` dimensions and for subsets too large to share directions, such as the whole
+    /// table. More sharpens one-dimensional marginals at the cost of all else.
     pub axis_share: f64,
     /// Slices per step. `None`: a sixteenth of an epoch, where an epoch visits every pixel of every frame once.
     pub batch_slices: Option<usize>,
@@ -86,8 +90,10 @@ impl Slicing {
         if !(0.0..=1.0).contains(&self.axis_share) {
             return out_of_range("the axis share", self.axis_share, "in [0, 1]");
         }
-        if self.batch_slices == Some(0) {
-            return out_of_range("the batch size", 0.0, "of at least 1 slice");
+        if let Some(slices) = self.batch_slices
+            && !(1..=MOST_SLICES).contains(&slices)
+        {
+            return out_of_range("the batch size", slices as f64, "from 1 to 2147483647 slices");
         }
         Ok(())
     }

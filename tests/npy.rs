@@ -85,7 +85,7 @@ fn metadata(table: &SampleTable) -> Metadata {
             ],
         }],
         bound: Some(BoundRecord { before: estimate, after: estimate }),
-        run: RunRecord { slices_per_class: 64, steps: 4096, seconds: 12.75 },
+        run: RunRecord { slices_per_class: 64, ended_early: true, steps: 4096, seconds: 12.75 },
         ..Metadata::new(table, u64::MAX - 1, configuration)
     }
 }
@@ -249,7 +249,7 @@ fn other_shapes_are_named() {
     let huge = f32s(&format!("({0}, {0}, {0}, {0}, {0})", u64::MAX), &[0.5]);
     #[cfg(target_pointer_width = "64")]
     assert_eq!(
-        problem(&huge, &["18446744073709551615", "4294967295"]),
+        problem(&huge, &["18446744073709551615", "2147483647"]),
         FormatError::Extent { shape: [usize::MAX; 5], problem: ConfigError::TooLarge { values: u64::MAX } }
     );
     // Just admissible, 16 GiB: refused for its length before any memory is asked for.

@@ -15,9 +15,10 @@ use crate::class::{Classes, Form};
 use crate::domain::{BELOW_ONE, Domain};
 use crate::kernel::{Kernel, SpatialKernel, TemporalKernel};
 use crate::lattice::Extent;
-use crate::objective::{Slice, Slicing, Term};
+use crate::objective::Slice;
 use crate::stream::{self, Purpose};
 use crate::target::Target;
+use crate::term::{Slicing, Term};
 
 #[derive(Clone, Copy, Debug)]
 enum Filter {

@@ -21,11 +21,13 @@ pub struct Bound {
     pub terms: Vec<BoundEstimate>,
 }
 
-/// Subsets that share a direction; the standard error is taken over directions.
+/// Most subsets that share a direction; the standard error is taken over directions.
 const CLUSTER: usize = 32;
+/// Fewest directions.
+const DIRECTIONS: usize = 16;
 
 /// Estimates the bound of a table by the exact 1-Wasserstein distances of about `slices` random slices per term
-/// (fewer for terms with large subsets, at least 128).
+/// (fewer for terms with large subsets, along at least 16 directions).
 ///
 /// White noise of the same shape is represented by as many independent points per slice as its subset holds, so that
 /// the ratio's denominator is exact in the mean, whatever the shape. Slices are those of `seed`; the optimiser's own
@@ -43,9 +45,9 @@ pub fn bound(
         return Err(ConfigError::OutOfRange { name: "slices", value: 0.0, expected: "of at least 1" });
     }
     objective.check_table(table)?;
-    let points: Vec<f64> = table.values().iter().map(|&value| value.into()).collect();
+    let points = table.values();
     let terms: Vec<Moments> = (0..objective.terms().count())
-        .map(|term| Moments::of_term(objective, &points, seed, slices, term))
+        .map(|term| Moments::of_term(objective, points, seed, slices, term))
         .collect();
     let weights: Vec<f64> = objective.terms().map(|term| term.weight).collect();
     let total: f64 = weights.iter().sum();
@@ -67,15 +69,17 @@ struct Moments {
 }
 
 impl Moments {
-    fn of_term(objective: &Objective, points: &[f64], seed: u64, slices: usize, term: usize) -> Self {
+    fn of_term(objective: &Objective, points: &[f32], seed: u64, slices: usize, term: usize) -> Self {
         let family = &objective.terms[term].family;
         // As many touches as the smallest family needs for its slices, in a large one too.
         let least = objective.terms.iter().map(|term| term.family.mean_size()).fold(f64::INFINITY, f64::min);
         let slices = (slices as f64 * least / family.mean_size()).ceil() as usize;
-        let clusters = slices.div_ceil(CLUSTER).max(4);
+        // Subsets of a direction are different ones: a family of a few large classes has one each.
+        let per_direction = if family.visited() < DIRECTIONS * CLUSTER { 1 } else { CLUSTER };
+        let clusters = slices.div_ceil(per_direction).max(DIRECTIONS);
         let pairs: Vec<(f64, f64)> = (0..clusters)
             .into_par_iter()
-            .map(|cluster| distances(objective, points, seed, term, cluster, clusters))
+            .map(|cluster| distances(objective, points, seed, term, (cluster, clusters, per_direction)))
             .collect();
         let count = clusters as f64;
         let mean = |value: &dyn Fn(&(f64, f64)) -> f64| pairs.iter().map(value).sum::<f64>() / count;
@@ -118,11 +122,10 @@ impl Moments {
 /// Mean distance per touched sample of the table and of white noise, over the subsets of one direction.
 fn distances(
     objective: &Objective,
-    points: &[f64],
+    points: &[f32],
     seed: u64,
     term: usize,
-    cluster: usize,
-    clusters: usize,
+    (cluster, clusters, per_direction): (usize, usize, usize),
 ) -> (f64, f64) {
     let planned = &objective.terms[term];
     let dims = planned.spec.dims.len();
@@ -139,16 +142,16 @@ fn distances(
     };
     let law = planned.spec.target.project(&direction);
     let cut: Vec<f64> = (0..dims).map(|_| generator.random()).collect();
-    let mut levels: [usize; CLUSTER] = std::array::from_fn(|stratum| stratum);
-    levels.shuffle(&mut generator);
+    let mut strata: Vec<usize> = (0..per_direction).collect();
+    strata.shuffle(&mut generator);
     let mut weights = Vec::new();
     let mut slice = Slice { term, member: 0, level: 0.0, direction, cut };
     let (mut workspace, mut samples, mut projections) = Default::default();
     let workspace: &mut Workspace = &mut workspace;
     let (mut of_table, mut of_noise) = (0.0, 0.0);
-    for stratum in levels {
+    for stratum in strata {
         slice.member = planned.family.visited_member(generator.random_range(0..planned.family.visited()));
-        slice.level = (stratum as f64 + generator.random::<f64>()) / CLUSTER as f64;
+        slice.level = (stratum as f64 + generator.random::<f64>()) / per_direction as f64;
         planned.family.select(slice.member, slice.level, &mut samples);
         if samples.is_empty() {
             continue; // none of the class's samples at this level is demanded
@@ -163,6 +166,6 @@ fn distances(
         }
         of_noise += mass * workspace.w1(&law, &projections, weights);
     }
-    let mass = CLUSTER as f64 * planned.family.mean_mass();
+    let mass = per_direction as f64 * planned.family.mean_mass();
     (of_table / mass, of_noise / mass)
 }

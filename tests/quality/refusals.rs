@@ -82,7 +82,7 @@ fn slicing() {
         assert_eq!(words, format!("the axis share is {share}: give a value in [0, 1]"));
     }
     let words = refusal(|config| config.slicing.batch_slices = Some(0));
-    assert_eq!(words, "the batch size is 0: give a value of at least 1 slice");
+    assert_eq!(words, "the batch size is 0: give a value from 1 to 2147483647 slices");
 }
 
 #[test]
