@@ -35,6 +35,9 @@ pub(crate) struct Engine {
     chunks: Vec<Chunk>,
     /// What workers need while they transport; as many as there are workers.
     scratch: Mutex<Vec<Scratch>>,
+    /// The same for the largest subsets, which come one after the other and share their sorts between threads: a few
+    /// times the table, but once.
+    large: Scratch,
 }
 
 #[derive(Default)]
@@ -71,6 +74,7 @@ impl Engine {
             draws: Vec::new(),
             chunks: Vec::new(),
             scratch: Mutex::default(),
+            large: Scratch::default(),
         }
     }
 
@@ -83,10 +87,19 @@ impl Engine {
         points: &[f32],
         pull: &mut Pull,
     ) {
-        let Self { arch, orders, draws, chunks, scratch } = self;
+        let Self { arch, orders, draws, chunks, scratch, large } = self;
         let scratch = &*scratch;
         objective.draw_subsets(seed, step, role, orders, draws);
         (pull.slices, pull.squares, pull.mass) = (0, 0.0, 0.0);
+        let is_large =
+            |draw: &Draw| objective.terms[draw.term as usize].family.mean_size() >= long::SHARED as f64;
+        for draw in draws.iter().filter(|draw| is_large(draw)) {
+            chunks.resize_with(chunks.len().max(1), Chunk::default);
+            let (draws, chunk) = (std::slice::from_ref(draw), &mut chunks[0]);
+            arch.dispatch(Transport { objective, seed, step, points, draws, chunk, scratch: large });
+            chunk.add_to(objective, draws, pull);
+        }
+        draws.retain(|draw| !is_large(draw));
         // Fewer large subsets at a time, so that memory is bounded by samples and not by slices times samples.
         let sizes =
             objective.terms.iter().filter(|term| term.spec.role == role).map(|term| term.family.mean_size());

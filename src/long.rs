@@ -7,7 +7,7 @@ use crate::lanes::Gather;
 use crate::target::Projected;
 
 /// Above this many samples a sort is worth sharing between threads.
-const SHARED: usize = 1 << 15;
+pub(crate) const SHARED: usize = 1 << 15;
 
 /// Buffers of one worker; they grow to the largest subset seen and stay.
 #[derive(Clone, Debug, Default)]

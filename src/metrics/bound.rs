@@ -24,10 +24,10 @@ pub struct Bound {
 /// Most subsets that share a direction; the standard error is taken over directions.
 const CLUSTER: usize = 32;
 /// Fewest directions.
-const DIRECTIONS: usize = 16;
+const DIRECTIONS: usize = 8;
 
 /// Estimates the bound of a table by the exact 1-Wasserstein distances of about `slices` random slices per term
-/// (fewer for terms with large subsets, along at least 16 directions).
+/// (fewer for terms with large subsets, along at least 8 directions).
 ///
 /// White noise of the same shape is represented by as many independent points per slice as its subset holds, so that
 /// the ratio's denominator is exact in the mean, whatever the shape. Slices are those of `seed`; the optimiser's own
