@@ -215,9 +215,9 @@ fn values_are_pinned() {
         (table.values()[..4].to_vec(), sum / table.values().len() as f64)
     };
     for ((first, mean), (expected, expected_mean)) in [
-        (values([1, 8, 8, 1], 2, Descent::barycentric()), ([0.05073, 0.67073, 0.58796, 0.84613], 0.487267)),
-        (values([3, 5, 7, 1], 2, Descent::barycentric()), ([0.04972, 0.66737, 0.59431, 0.85863], 0.496808)),
-        (values([1, 6, 6, 2], 4, Descent::adam()), ([0.04315, 0.68156, 0.67579, 0.77177], 0.500442)),
+        (values([1, 8, 8, 1], 2, Descent::barycentric()), ([0.04938, 0.67882, 0.59757, 0.86115], 0.485519)),
+        (values([3, 5, 7, 1], 2, Descent::barycentric()), ([0.04836, 0.66538, 0.59683, 0.85802], 0.497646)),
+        (values([1, 6, 6, 2], 4, Descent::adam()), ([0.02789, 0.55331, 0.73998, 0.72187], 0.495271)),
     ] {
         let close = |a: f64, b: f64| (a - b).abs() < 1e-4;
         let same = first.iter().zip(&expected).all(|(&a, &b)| close(a.into(), b));

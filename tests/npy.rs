@@ -245,18 +245,21 @@ fn other_shapes_are_named() {
         problem(&f32s("(1, 0, 4, 1, 2)", &[]), &["[1, 0, 4, 1, 2]", "height is 0", "at least 1"]),
         FormatError::Extent { shape: [1, 0, 4, 1, 2], problem: ConfigError::EmptyAxis { axis: "height" } }
     );
-    // 2^64 - 1 on each axis: the product overflows any integer.
-    let huge = f32s(&format!("({0}, {0}, {0}, {0}, {0})", u64::MAX), &[0.5]);
+    // 2^64 - 1 on four axes: the product overflows any integer.
+    let huge = f32s(&format!("({0}, {0}, {0}, {0}, 1)", u64::MAX), &[0.5]);
     #[cfg(target_pointer_width = "64")]
     assert_eq!(
         problem(&huge, &["18446744073709551615", "2147483647"]),
-        FormatError::Extent { shape: [usize::MAX; 5], problem: ConfigError::TooLarge { values: u64::MAX } }
+        FormatError::Extent {
+            shape: [usize::MAX, usize::MAX, usize::MAX, usize::MAX, 1],
+            problem: ConfigError::TooLarge { values: u64::MAX }
+        }
     );
-    // Just admissible, 16 GiB: refused for its length before any memory is asked for.
-    let large = [1, 1, 65535, 65537, 1];
+    // Just admissible, 8 GiB: refused for its length before any memory is asked for.
+    let large = [1, 1, 32767, 65537, 1];
     assert_eq!(
-        problem(&f32s("(1, 1, 65535, 65537, 1)", &[0.5]), &["4 bytes", "17179869180"]),
-        FormatError::Length { given: 4, expected: 17_179_869_180, shape: large }
+        problem(&f32s("(1, 1, 32767, 65537, 1)", &[0.5]), &["4 bytes", "8589803516"]),
+        FormatError::Length { given: 4, expected: 8_589_803_516, shape: large }
     );
     assert!(load_bytes(&huge).is_err());
 }

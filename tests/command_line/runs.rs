@@ -152,13 +152,13 @@ fn interrupts_end_a_run_cleanly() {
             continue;
         }
         assert!(output.status.success() && !err.contains("panicked"), "{err}");
-        assert!(out.contains("stopped early"), "{out}");
+        assert!(out.contains("stopped after"), "{out}");
         assert!(begin.elapsed() < Duration::from_secs(60));
         let (table, metadata) = SampleTable::load_with(home.path().join("table.npy")).unwrap();
         assert_eq!(names(home.path()), ["table.json", "table.npy"]);
         let start = SampleTable::white_noise(table.extent(), 2, 0).unwrap();
         assert_ne!(table, start);
-        assert!(metadata.run.steps > 0);
+        assert!(metadata.run.steps > 0 && metadata.run.ended_early);
         return;
     }
     panic!("no run lived long enough to be interrupted");

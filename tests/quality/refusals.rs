@@ -42,7 +42,7 @@ fn extents() {
     let words = refusal(|config| config.extent = extent([usize::MAX, 2, 2, 1]));
     assert_eq!(
         words,
-        format!("the table would hold {} values: stay at or below 4294967295 (2^32 - 1)", u64::MAX)
+        format!("the table would hold {} values: stay at or below 2147483647 (2^31 - 1)", u64::MAX)
     );
 }
 
