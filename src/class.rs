@@ -70,7 +70,7 @@ pub(crate) enum Wanted {
 }
 
 impl Wanted {
-    fn site(&self, site: usize) -> bool {
+    pub(crate) fn site(&self, site: usize) -> bool {
         match self {
             Wanted::All => true,
             Wanted::Some(flags) => flags[site],

@@ -79,6 +79,7 @@
 mod atomic;
 mod bank;
 mod class;
+mod cramer;
 mod demand;
 mod descent;
 mod direction;

@@ -1,0 +1,133 @@
+//! Sweeps: every sample once, in random order, moved along the gradient of the closed form.
+
+use pulp::{Arch, NullaryFnOnce};
+use rand::seq::SliceRandom;
+use rayon::prelude::*;
+
+use super::mean_projection;
+use super::pairs::Pairs;
+use super::planes::{Planes, Run};
+use crate::domain::Domain;
+use crate::objective::Objective;
+use crate::row::{LANES, Row};
+use crate::stream::{self, Purpose};
+use crate::term::Role;
+
+/// Steps per sweep: the samples of a step move together, so that they had better not be neighbours.
+pub(crate) const STEPS: usize = 16;
+
+/// A table on its way through sweeps.
+///
+/// A *run* of [`LANES`] consecutive pixels is the unit of work. Each step of a sweep moves a random sixteenth of the
+/// runs; their pulls are computed in parallel from the same table, then applied, so that nothing depends on threads.
+pub(crate) struct Sweeper {
+    arch: Arch,
+    terms: Vec<Pairs>,
+    /// What a term's pull counts on each of its coordinates.
+    factors: Vec<Vec<f32>>,
+    margin: usize,
+    planes: Planes,
+    dims: usize,
+    /// Runs that hold a demanded sample, in the order of this sweep.
+    order: Vec<u32>,
+    pulls: Vec<Row>,
+}
+
+impl Sweeper {
+    /// Plans the sweeps of an objective whose descended terms all have a closed form.
+    pub(crate) fn new(objective: &Objective, truncation: f64) -> Self {
+        let (extent, dims) = (objective.extent, objective.dims);
+        let planned = || objective.terms.iter().filter(|term| term.spec.role == Role::Descend);
+        let terms: Vec<Pairs> = planned().map(|term| Pairs::new(term, extent, truncation)).collect();
+        // A slice's pull is its group's number of dimensions times its mean displacement, a coordinate's pull the mean
+        // over the terms that see it by weight. So it is here, where directions are meant already.
+        let mut seen = vec![0.0; dims];
+        for term in planned() {
+            term.spec.dims.iter().for_each(|&dim| seen[dim] += term.spec.weight);
+        }
+        let factors = planned().map(|term| {
+            let count = term.spec.dims.len();
+            let strength = term.spec.weight * count as f64 * mean_projection(count);
+            term.spec.dims.iter().map(|&dim| (strength / seen[dim]) as f32).collect()
+        });
+        let factors = factors.collect();
+        let margin = terms.iter().map(Pairs::reach).max().unwrap_or(0);
+        let planes = Planes::new(extent, dims, margin, &objective.wanted);
+        let wanted = |&index: &u32| {
+            let run = planes.run(index as usize);
+            (0..planes.len(run)).any(|lane| planes.wants(run, lane))
+        };
+        let order = (0..planes.runs() as u32).filter(wanted).collect();
+        Self { arch: Arch::new(), terms, factors, margin, planes, dims, order, pulls: Vec::new() }
+    }
+
+    /// Pairs of samples that a sweep visits.
+    pub(crate) fn pairs(&self) -> usize {
+        self.order.len() * LANES * self.terms.iter().map(Pairs::neighbours).sum::<usize>()
+    }
+
+    /// Begins a sweep at this table, in an order named by seed and sweep.
+    pub(crate) fn begin(&mut self, seed: u64, sweep: u64, points: &[f32]) {
+        self.planes.load(points);
+        self.order.sort_unstable();
+        self.order.shuffle(&mut stream::generator(seed, Purpose::Sweep, sweep, 0));
+        // Within a step the order doesn't matter, and neighbours share rows.
+        let size = self.step_size();
+        self.order.chunks_mut(size).for_each(<[u32]>::sort_unstable);
+    }
+
+    fn step_size(&self) -> usize {
+        self.order.len().div_ceil(STEPS).max(1)
+    }
+
+    /// Moves the samples of one step of the sweep by `rate` times their pull. Returns the mean square of the pull.
+    pub(crate) fn step(&mut self, step: usize, rate: f64, domains: &[Domain], points: &mut [f32]) -> f64 {
+        let size = self.step_size();
+        let Some(runs) = self.order.chunks(size).nth(step) else { return 0.0 };
+        let mut pulls = std::mem::take(&mut self.pulls);
+        pulls.resize(size * self.dims, [0.0; LANES]);
+        let tasks = pulls.par_chunks_exact_mut(self.dims).zip(runs);
+        tasks.with_min_len(RUNS_PER_TASK).for_each(|(pulls, &run)| {
+            self.arch.dispatch(PullOfRun { sweeper: self, run: self.planes.run(run as usize), pulls });
+        });
+        let (mut squares, mut moved) = (0.0, 0);
+        for (pulls, &run) in pulls.chunks_exact(self.dims).zip(runs) {
+            let run = self.planes.run(run as usize);
+            for lane in (0..self.planes.len(run)).filter(|&lane| self.planes.wants(run, lane)) {
+                let first = self.planes.first(run, lane);
+                let point = &mut points[first..first + self.dims];
+                for ((value, pull), domain) in point.iter_mut().zip(pulls).zip(domains) {
+                    squares += f64::from(pull[lane] * pull[lane]);
+                    *value = domain.admit(*value + rate as f32 * pull[lane]);
+                }
+                moved += 1;
+                self.planes.set(run, lane, point);
+            }
+        }
+        self.pulls = pulls;
+        squares / (moved * self.dims).max(1) as f64
+    }
+}
+
+/// Runs per task: some ten microseconds.
+const RUNS_PER_TASK: usize = 2;
+
+/// The pull on one run, compiled once per instruction set.
+struct PullOfRun<'a> {
+    sweeper: &'a Sweeper,
+    run: Run,
+    pulls: &'a mut [Row],
+}
+
+impl NullaryFnOnce for PullOfRun<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { sweeper: Sweeper { terms, factors, margin, planes, .. }, run, pulls } = self;
+        pulls.fill([0.0; LANES]);
+        for (pairs, factors) in terms.iter().zip(factors) {
+            pairs.add_pull(planes, *margin, run, factors, pulls);
+        }
+    }
+}
