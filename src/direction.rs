@@ -19,7 +19,8 @@ pub(crate) struct Slicer {
     per_subset: usize,
     axis_share: f64,
     bank: Option<Bank>,
-    /// Cosine and sine of evenly spaced angles, turned as one for each subset.
+    /// Cosine and sine of evenly spaced angles, turned as one for each subset. Where their number is even, the second
+    /// half of them are the first turned by a right angle, and not listed.
     fan: Vec<[f64; 2]>,
 }
 
@@ -34,6 +35,9 @@ pub(crate) struct Directions {
     pub block: usize,
     /// Lanes that were replaced by a coordinate axis.
     pub on_axis: [bool; LANES],
+    /// Whether the upper half of the lanes holds the lower half turned by a right angle, in the plane: their laws
+    /// are the same.
+    pub paired: bool,
 }
 
 impl Slicer {
@@ -44,8 +48,9 @@ impl Slicer {
         let bank = (dims > 2).then(|| Bank::new(dims, target));
         let mut slicer = Self { dims, per_subset, axis_share, bank, fan: Vec::new() };
         let spacing = slicer.spacing();
-        slicer.fan.extend((0..per_subset).map(|lane| {
-            let (sin, cos) = (spacing * lane as f64).sin_cos();
+        let listed = if per_subset % 2 == 0 { per_subset / 2 } else { per_subset };
+        slicer.fan.extend((0..listed).map(|lane| {
+            let (sin, cos) = libm::sincos(spacing * lane as f64);
             [cos, sin]
         }));
         slicer
@@ -59,12 +64,20 @@ impl Slicer {
         self.bank.as_ref()
     }
 
+    /// Whether [`Slicer::draw`] asks its generator for anything.
+    pub(crate) fn is_random(&self) -> bool {
+        self.bank.is_some() || self.axis_share > 0.0 && self.dims > 1
+    }
+
     /// Draws directions; `phase` in `[0, 1)` turns the fan of the plane.
     pub(crate) fn draw(&self, phase: f64, generator: &mut impl Rng, directions: &mut Directions) {
         directions.count = self.per_subset;
+        directions.paired = self.dims == 2 && self.per_subset == LANES;
         directions.on_axis = [false; LANES];
-        directions.theta.clear();
         directions.theta.resize(self.dims, [0.0; LANES]);
+        for row in &mut directions.theta {
+            row[self.per_subset..].fill(0.0);
+        }
         match &self.bank {
             None if self.dims == 1 => directions.theta[0][0] = 1.0,
             None => self.turn(phase, &mut directions.theta),
@@ -81,10 +94,16 @@ impl Slicer {
     }
 
     fn turn(&self, phase: f64, theta: &mut [Row]) {
-        let (sin, cos) = (self.spacing() * phase).sin_cos();
+        // From `libm`, whose bits do not depend on the platform.
+        let (sin, cos) = libm::sincos(self.spacing() * phase);
+        let [across, along] = theta else { return };
         for (lane, [fixed_cos, fixed_sin]) in self.fan.iter().enumerate() {
-            theta[0][lane] = (fixed_cos * cos - fixed_sin * sin) as f32;
-            theta[1][lane] = (fixed_sin * cos + fixed_cos * sin) as f32;
+            across[lane] = (fixed_cos * cos - fixed_sin * sin) as f32;
+            along[lane] = (fixed_sin * cos + fixed_cos * sin) as f32;
+        }
+        for lane in self.fan.len()..self.per_subset {
+            let half = lane - self.fan.len();
+            (across[lane], along[lane]) = (-along[half], across[half]);
         }
     }
 

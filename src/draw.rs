@@ -79,13 +79,19 @@ impl Objective {
         cut: &mut Vec<Option<f32>>,
     ) {
         let term = &self.terms[draw.term as usize];
-        let mut generator = stream::generator(seed, Purpose::Subset, step, draw.name);
-        term.slicer.draw(draw.phase, &mut generator, directions);
         cut.clear();
-        cut.extend(term.spec.dims.iter().map(|&dim| match self.domains[dim] {
-            Domain::Interval => None,
-            Domain::Torus => Some(generator.random()),
-        }));
+        cut.resize(term.spec.dims.len(), None);
+        let is_cut = |dim: &usize| self.domains[*dim] == Domain::Torus;
+        let is_random = term.slicer.is_random() || term.spec.dims.iter().any(is_cut);
+        let mut generator = match is_random {
+            true => stream::generator(seed, Purpose::Subset, step, draw.name),
+            // Nobody asks it; naming one takes as long as transporting a sample.
+            false => stream::unnamed(),
+        };
+        term.slicer.draw(draw.phase, &mut generator, directions);
+        for (cut, dim) in cut.iter_mut().zip(&term.spec.dims) {
+            *cut = is_cut(dim).then(|| generator.random());
+        }
     }
 
     /// The slices that the terms of a role draw in step `step` of an optimisation with this seed, one by one.

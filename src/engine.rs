@@ -6,7 +6,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use pulp::{Arch, NullaryFnOnce};
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::bank::Boundary;
@@ -15,6 +15,7 @@ use crate::draw::{Draw, Order};
 use crate::lanes::{self, Gather, LaneBuffers};
 use crate::law::{LaneLaw, Tabulated, Trapezoid};
 use crate::long::{self, LongBuffers, LongLaw};
+use crate::network::Network;
 use crate::objective::Objective;
 use crate::plan::PlannedTerm;
 use crate::pull::Pull;
@@ -134,11 +135,11 @@ struct Transport<'a> {
     scratch: &'a mut Scratch,
 }
 
-impl NullaryFnOnce for Transport<'_> {
+impl WithSimd for Transport<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn call(self) {
+    fn with_simd<S: Simd>(self, simd: S) {
         let Self { objective, seed, step, points, draws, chunk, scratch } = self;
         chunk.samples.clear();
         chunk.moves.clear();
@@ -150,7 +151,7 @@ impl NullaryFnOnce for Transport<'_> {
             objective.draw_directions(seed, step, draw, &mut scratch.directions, &mut scratch.cut);
             term.family.select(draw.member as usize, draw.level, &mut scratch.subset);
             term.family.weigh(draw.member as usize, &mut scratch.weights);
-            chunk.transport(objective, term, points, scratch);
+            chunk.transport(simd, objective, term, points, scratch);
             chunk.samples.extend_from_slice(&scratch.subset);
             chunk.ends.push(chunk.samples.len());
         }
@@ -160,8 +161,9 @@ impl NullaryFnOnce for Transport<'_> {
 impl Chunk {
     /// Transports the selected subset along its directions and appends the moves.
     #[inline(always)]
-    fn transport(
+    fn transport<S: Simd>(
         &mut self,
+        simd: S,
         objective: &Objective,
         term: &PlannedTerm,
         points: &[f32],
@@ -173,7 +175,7 @@ impl Chunk {
         self.moves.resize(first + n * dims.len(), 0.0);
         let moves = &mut self.moves[first..];
         let gather = Gather { samples: subset, points, stride: objective.dims, dims, cut };
-        let Directions { count, theta, block, on_axis } = &*directions;
+        let Directions { count, theta, block, on_axis, .. } = &*directions;
         let block = term.slicer.bank().map(|bank| bank.block(*block));
         self.slices += *count as u64;
         let weights = term.family.is_weighted().then_some(weights.as_slice());
@@ -182,19 +184,20 @@ impl Chunk {
         if n == 0 {
             return; // none of the class's samples at this level is demanded
         }
-        if let Some((&size, plan)) = term.sizes.range(n..).next() {
+        if n <= term.longest {
             let law = match block {
-                None => LaneLaw::Trapezoid(Trapezoid::new(theta)),
+                None => LaneLaw::Trapezoid(Trapezoid::new(directions)),
                 Some(block) => {
-                    if size != n {
+                    let planned = term.grids.get(&n);
+                    if planned.is_none() {
                         grid.clear();
                         grid.extend(Boundary::grid(n));
                     }
-                    let grid = if size == n { &plan.grid } else { grid };
-                    LaneLaw::Tabulated(Tabulated::new(directions, block, grid))
+                    LaneLaw::Tabulated(Tabulated::new(directions, block, planned.unwrap_or(grid)))
                 }
             };
-            let squares = lanes::transport(&gather, theta, &law, &plan.network, lanes, moves);
+            let network = &term.networks[Network::blocks(n)];
+            let squares = lanes::transport(simd, &gather, theta, &law, network, lanes, moves);
             self.squares += f64::from(squares);
             return;
         }

@@ -8,7 +8,8 @@ use crate::bank::{Block, Boundary};
 use crate::direction::Directions;
 use crate::row::{LANES, Row};
 
-/// The laws of one group of directions.
+/// The laws of one group of directions, of points whose coordinates are taken from the middle of the cube: each is
+/// symmetric around 0.
 pub(crate) enum LaneLaw<'a> {
     /// At most two components differ from zero: a trapezoid.
     Trapezoid(Trapezoid),
@@ -17,90 +18,99 @@ pub(crate) enum LaneLaw<'a> {
 }
 
 impl LaneLaw<'_> {
-    /// Lowest projection and length of the support, per lane.
+    /// Length of the support, per lane.
     #[inline(always)]
-    pub(crate) fn support(&self) -> (&Row, &Row) {
+    pub(crate) fn extent(&self) -> &Row {
         match self {
-            LaneLaw::Trapezoid(law) => (&law.lowest, &law.extent),
-            LaneLaw::Tabulated(law) => (&law.lowest, &law.extent),
+            LaneLaw::Trapezoid(law) => &law.extent,
+            LaneLaw::Tabulated(law) => &law.extent,
         }
     }
 
-    /// Writes the means of the quantile function over `cells.len()` equal cells.
+    /// Writes the means of the quantile function over the lower `n / 2` of `n` equal cells. Those of the upper half are
+    /// their negatives, and that of a cell in the middle is 0.
     #[inline(always)]
-    pub(crate) fn cell_means(&self, cells: &mut [Row]) {
+    pub(crate) fn lower_cell_means(&self, n: usize, cells: &mut [Row]) {
         match self {
-            LaneLaw::Trapezoid(law) => law.cell_means(cells),
-            LaneLaw::Tabulated(law) => law.cell_means(cells),
+            LaneLaw::Trapezoid(law) if law.paired => law.lower_cell_means::<{ LANES / 2 }>(n, cells),
+            LaneLaw::Trapezoid(law) => law.lower_cell_means::<LANES>(n, cells),
+            LaneLaw::Tabulated(law) => law.lower_cell_means(n, cells),
         }
     }
 }
 
-/// Law of `a U + b V + lowest` for independent uniform `U`, `V` and `a ≥ b ≥ 0`.
+/// Law of `a U + b V` for independent `U`, `V`, uniform on `[-1/2, 1/2]`, and `a ≥ b ≥ 0`.
 pub(crate) struct Trapezoid {
-    lowest: Row,
     extent: Row,
     longer: Row,
     shorter: Row,
+    paired: bool,
 }
 
 impl Trapezoid {
-    /// The laws of these directions, given by the rows of their components; at most two rows.
+    /// The laws of directions in at most two dimensions.
     #[inline(always)]
-    pub(crate) fn new(theta: &[Row]) -> Self {
-        let [mut lowest, mut extent, mut longer, mut shorter] = [[0.0_f32; LANES]; 4];
-        for row in theta {
+    pub(crate) fn new(directions: &Directions) -> Self {
+        let [mut extent, mut longer, mut shorter] = [[0.0_f32; LANES]; 3];
+        for row in &directions.theta {
             for lane in 0..LANES {
                 let length = row[lane].abs();
-                lowest[lane] += row[lane].min(0.0);
                 extent[lane] += length;
-                shorter[lane] = shorter[lane].max(length.min(longer[lane]));
-                longer[lane] = longer[lane].max(length);
+                shorter[lane] = greater(shorter[lane], lesser(length, longer[lane]));
+                longer[lane] = greater(longer[lane], length);
             }
         }
-        Self { lowest, extent, longer, shorter }
+        Self { extent, longer, shorter, paired: directions.paired }
     }
 
+    /// Cell means of the first `WIDTH` lanes, repeated in the others.
     #[inline(always)]
-    fn cell_means(&self, means: &mut [Row]) {
-        let n = means.len();
+    fn lower_cell_means<const WIDTH: usize>(&self, n: usize, means: &mut [Row]) {
         let cells = n as f32;
-        // In units of cells: the rising edge of the trapezoid ends at `edge`, inside cell `split`, whose mean is
-        // `split_mean`. Before it the quantile is sqrt(2 a b u), after it a u + b / 2.
-        let [mut split, mut split_mean, mut tail, mut slope, mut offset] = [[0.0; LANES]; 5];
-        for lane in 0..LANES {
-            let (a, b) = (self.longer[lane].max(f32::MIN_POSITIVE), self.shorter[lane]);
+        // In units of cells, from the lower end of the support: the rising edge of the trapezoid ends at `edge`, inside
+        // cell `split`, whose mean is `split_mean`. Before it the quantile is sqrt(2 a b u), after it a u + b / 2.
+        let [mut split, mut split_mean, mut tail, mut slope, mut offset, mut half] = [[0.0_f32; WIDTH]; 6];
+        for lane in 0..WIDTH {
+            let (a, b) = (greater(self.longer[lane], f32::MIN_POSITIVE), self.shorter[lane]);
             let edge = cells * (b / a) * 0.5;
             tail[lane] = (2.0 * a * b / cells).sqrt();
             slope[lane] = a / cells;
-            offset[lane] = b * 0.5;
+            // From the middle of the support, and to the middle of a cell.
+            half[lane] = 0.5 * self.extent[lane];
+            offset[lane] = b * 0.5 - half[lane] + 0.5 * slope[lane];
             split[lane] = edge.floor();
             let share = edge - split[lane];
             // Mean of sqrt over [split, edge] without cancellation.
             let (root_low, root_high) = (split[lane].sqrt(), edge.sqrt());
             let rising = tail[lane] * (2.0 / 3.0) * (edge + root_low * root_high + split[lane])
-                / (root_low + root_high).max(f32::MIN_POSITIVE);
-            let linear = slope[lane] * (edge + split[lane] + 1.0) * 0.5 + offset[lane];
-            split_mean[lane] = share * rising + (1.0 - share) * linear;
+                / greater(root_low + root_high, f32::MIN_POSITIVE);
+            let linear = slope[lane] * (edge + split[lane]) * 0.5 + offset[lane];
+            split_mean[lane] = share * (rising - half[lane]) + (1.0 - share) * linear;
         }
-        let (lower, upper) = means.split_at_mut(n.div_ceil(2));
-        for (rank, (mean, mirrored)) in lower.iter_mut().zip(upper.iter_mut().rev()).enumerate() {
+        for (rank, mean) in means[..n / 2].iter_mut().enumerate() {
             let (cell, root_mean) = (rank as f32, root_mean(rank));
-            for lane in 0..LANES {
-                let rising = tail[lane] * root_mean;
-                let linear = slope[lane] * (cell + 0.5) + offset[lane];
+            for lane in 0..WIDTH {
+                let rising = tail[lane] * root_mean - half[lane];
+                let linear = slope[lane] * cell + offset[lane];
                 let after = if cell > split[lane] { linear } else { split_mean[lane] };
-                let above = if cell < split[lane] { rising } else { after };
-                mean[lane] = self.lowest[lane] + above;
-                mirrored[lane] = self.lowest[lane] + (self.extent[lane] - above);
-            }
-        }
-        if n % 2 == 1 {
-            for (lane, middle) in lower[n / 2].iter_mut().enumerate() {
-                *middle = self.lowest[lane] + 0.5 * self.extent[lane];
+                let value = if cell < split[lane] { rising } else { after };
+                mean[lane] = value;
+                mean[lane + LANES - WIDTH] = value;
             }
         }
     }
+}
+
+/// The greater of two numbers, in one instruction: `f32::max` would take care of NaN as well.
+#[inline(always)]
+fn greater(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// The lesser of two numbers.
+#[inline(always)]
+fn lesser(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
 }
 
 /// Laws of one block of a bank, with some lanes replaced by coordinate axes.
@@ -108,7 +118,6 @@ pub(crate) struct Tabulated<'a> {
     block: &'a Block,
     grid: &'a [Boundary],
     on_axis: &'a [bool; LANES],
-    lowest: Row,
     extent: Row,
 }
 
@@ -116,39 +125,28 @@ impl<'a> Tabulated<'a> {
     /// The laws of these directions for subsets whose quantile cells end at the boundaries of `grid`.
     #[inline(always)]
     pub(crate) fn new(directions: &'a Directions, block: &'a Block, grid: &'a [Boundary]) -> Self {
-        let (mut lowest, mut extent) = ([0.0_f32; LANES], [0.0_f32; LANES]);
+        let mut extent = [0.0_f32; LANES];
         for row in &directions.theta {
             for lane in 0..LANES {
-                lowest[lane] += row[lane].min(0.0);
                 extent[lane] += row[lane].abs();
             }
         }
-        Self { block, grid, on_axis: &directions.on_axis, lowest, extent }
+        Self { block, grid, on_axis: &directions.on_axis, extent }
     }
 
     #[inline(always)]
-    fn cell_means(&self, means: &mut [Row]) {
-        let n = means.len();
+    fn lower_cell_means(&self, n: usize, means: &mut [Row]) {
         let cells = n as f64;
         let mut below = [0.0; LANES];
-        let (lower, upper) = means.split_at_mut(n / 2);
-        let mirrored = upper.iter_mut().rev();
-        for (rank, ((mean, mirrored), boundary)) in lower.iter_mut().zip(mirrored).zip(self.grid).enumerate()
-        {
+        for (rank, (mean, boundary)) in means[..n / 2].iter_mut().zip(self.grid).enumerate() {
             let integral = self.block.integral(boundary);
             let uniform = (rank as f32 + 0.5) / n as f32;
             for lane in 0..LANES {
                 let tabulated = ((integral[lane] - below[lane]) * cells) as f32;
                 let above = if self.on_axis[lane] { uniform } else { tabulated };
-                mean[lane] = self.lowest[lane] + above;
-                mirrored[lane] = self.lowest[lane] + (self.extent[lane] - above);
+                mean[lane] = above - 0.5 * self.extent[lane];
             }
             below = integral;
-        }
-        if n % 2 == 1 {
-            for (lane, middle) in upper[0].iter_mut().enumerate() {
-                *middle = self.lowest[lane] + 0.5 * self.extent[lane];
-            }
         }
     }
 }

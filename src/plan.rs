@@ -17,18 +17,14 @@ pub(crate) struct PlannedTerm {
     pub spec: Term,
     pub family: Family,
     pub slicer: Slicer,
-    /// Networks and quantile cells of the subset sizes that are sorted in lanes. A subset of another size takes the
-    /// next larger network.
-    pub sizes: BTreeMap<usize, SizePlan>,
+    /// Largest subset that is sorted in lanes; 0 if none is.
+    pub longest: usize,
+    /// Networks of the subsets that are sorted in lanes, by their number of blocks.
+    pub networks: Vec<Network>,
+    /// Boundaries of the quantile cells, where laws are tabulated, for the most frequent sizes.
+    pub grids: BTreeMap<usize, Vec<Boundary>>,
     /// Subsets drawn per step; need not be whole.
     pub rate: f64,
-}
-
-#[derive(Clone, Debug)]
-pub(crate) struct SizePlan {
-    pub network: Network,
-    /// Boundaries of the quantile cells, where laws are tabulated.
-    pub grid: Vec<Boundary>,
 }
 
 impl PlannedTerm {
@@ -71,12 +67,13 @@ impl PlannedTerm {
             Some(&largest) if family.is_partial() => partial_sizes(largest.min(LONGEST)).collect(),
             _ => sizes.into_iter().filter(|&size| size <= LONGEST).collect(),
         };
-        let plan = |n: usize| {
-            let grid = if slicer.bank().is_some() { Boundary::grid(n).collect() } else { Vec::new() };
-            (n, SizePlan { network: Network::new(n), grid })
+        let longest = sizes.last().copied().unwrap_or(0);
+        let networks = (0..=Network::blocks(longest)).map(Network::of_blocks).collect();
+        let grids = match slicer.bank() {
+            Some(_) => sizes.into_iter().map(|n| (n, Boundary::grid(n).collect())).collect(),
+            None => BTreeMap::new(),
         };
-        let sizes = sizes.into_iter().map(plan).collect();
-        Ok(Self { spec: term.clone(), family, slicer, sizes, rate: 0.0 })
+        Ok(Self { spec: term.clone(), family, slicer, longest, networks, grids, rate: 0.0 })
     }
 }
 

@@ -38,6 +38,12 @@ pub(crate) fn generator(seed: u64, purpose: Purpose, step: u64, index: u64) -> X
     Xoshiro256PlusPlus::from_seed(state)
 }
 
+/// A generator for where one is needed in form only.
+#[inline]
+pub(crate) fn unnamed() -> Xoshiro256PlusPlus {
+    Xoshiro256PlusPlus::from_seed([1; 32])
+}
+
 /// SplitMix64's bijective finaliser.
 #[inline]
 pub(crate) fn finalise(mut word: u64) -> u64 {
