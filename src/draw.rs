@@ -31,29 +31,61 @@ pub(crate) struct Order {
 /// Fractional part of the golden ratio: multiples of it are evenly spread for any count (Weyl, van der Corput).
 const GOLDEN_RATIO: f64 = 0.618_033_988_749_894_8;
 
+/// Which subsets are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Pick {
+    /// As many of this role as a batch holds.
+    Batch(Role),
+    /// One of every class in this role; the step is a sweep.
+    Each(Role),
+}
+
+impl Pick {
+    pub(crate) fn role(self) -> Role {
+        match self {
+            Pick::Batch(role) | Pick::Each(role) => role,
+        }
+    }
+
+    /// Keeps the names of both apart.
+    fn mark(self) -> u64 {
+        match self {
+            Pick::Batch(_) => 0,
+            Pick::Each(_) => 1 << 63,
+        }
+    }
+}
+
 impl Objective {
-    /// The subsets that the terms of a role draw in a step. `orders` keeps the permutations between steps.
+    /// The subsets that are drawn in a step. `orders` keeps the permutations between steps.
     pub(crate) fn draw_subsets(
         &self,
         seed: u64,
         step: u64,
-        role: Role,
+        pick: Pick,
         orders: &mut Vec<Order>,
         draws: &mut Vec<Draw>,
     ) {
         orders.resize_with(self.terms.len(), Order::default);
         draws.clear();
         for (index, (term, order)) in self.terms.iter().zip(orders).enumerate() {
-            if term.spec.role != role {
+            if term.spec.role != pick.role() {
                 continue;
             }
-            // Terms that draw less than once a step take turns.
-            let phase = ((index + 1) as f64 * GOLDEN_RATIO).fract();
-            let begin = (step as f64 * term.rate + phase) as u64;
-            let end = ((step + 1) as f64 * term.rate + phase) as u64;
-            let mut generator = stream::generator(seed, Purpose::Strata, step, index as u64);
-            let turn: f64 = generator.random();
             let members = term.family.visited() as u64;
+            let (rate, phase) = match pick {
+                // Terms that draw less than once a step take turns.
+                Pick::Batch(_) => (term.rate, ((index + 1) as f64 * GOLDEN_RATIO).fract()),
+                Pick::Each(_) => (members as f64, 0.0),
+            };
+            let begin = (step as f64 * rate + phase) as u64;
+            let end = ((step + 1) as f64 * rate + phase) as u64;
+            let mut generator = stream::generator(seed, Purpose::Strata, step, index as u64 | pick.mark());
+            let turn = match pick {
+                Pick::Batch(_) => generator.random(),
+                // A class that comes once a sweep has its directions spread over the sweeps.
+                Pick::Each(_) => (step as f64 * GOLDEN_RATIO).fract(),
+            };
             for visit in begin..end {
                 order.turn_to(seed, index as u64, visit / members, &term.family);
                 let (i, strata) = ((visit - begin) as f64, (end - begin) as f64);
@@ -63,7 +95,7 @@ impl Objective {
                     // Jittered strata of the level against a rotated golden-ratio sequence of the phase.
                     level: ((i + generator.random::<f64>()) / strata).min(1.0 - f64::EPSILON),
                     phase: (turn + i * GOLDEN_RATIO).fract(),
-                    name: (index as u64) << 32 | (visit - begin),
+                    name: (index as u64) << 32 | (visit - begin) | pick.mark(),
                 });
             }
         }
@@ -98,7 +130,7 @@ impl Objective {
     pub fn draw(&self, seed: u64, step: u64, role: Role) -> Vec<Slice> {
         let (mut orders, mut draws) = (Vec::new(), Vec::new());
         let (mut directions, mut cut) = (Directions::default(), Vec::new());
-        self.draw_subsets(seed, step, role, &mut orders, &mut draws);
+        self.draw_subsets(seed, step, Pick::Batch(role), &mut orders, &mut draws);
         let mut slices = Vec::new();
         for draw in &draws {
             self.draw_directions(seed, step, draw, &mut directions, &mut cut);

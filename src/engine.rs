@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use crate::bank::Boundary;
 use crate::direction::Directions;
-use crate::draw::{Draw, Order};
+use crate::draw::{Draw, Order, Pick};
 use crate::lanes::{self, Gather, LaneBuffers};
 use crate::law::{LaneLaw, Tabulated, Trapezoid};
 use crate::long::{self, LongBuffers, LongLaw};
@@ -79,18 +79,18 @@ impl Engine {
         }
     }
 
-    /// Transports the slices that the terms of a role draw in a step from `points` and adds what they pull to `pull`,
+    /// Transports the slices that are drawn in a step from `points` and adds what they pull to `pull`,
     /// which has one entry per coordinate.
     pub(crate) fn pull(
         &mut self,
         objective: &Objective,
-        (seed, step, role): (u64, u64, Role),
+        (seed, step, pick): (u64, u64, Pick),
         points: &[f32],
         pull: &mut Pull,
     ) {
         let Self { arch, orders, draws, chunks, scratch, large } = self;
         let scratch = &*scratch;
-        objective.draw_subsets(seed, step, role, orders, draws);
+        objective.draw_subsets(seed, step, pick, orders, draws);
         (pull.slices, pull.squares, pull.mass) = (0, 0.0, 0.0);
         let is_large =
             |draw: &Draw| objective.terms[draw.term as usize].family.mean_size() >= long::SHARED as f64;
@@ -102,8 +102,11 @@ impl Engine {
         }
         draws.retain(|draw| !is_large(draw));
         // Fewer large subsets at a time, so that memory is bounded by samples and not by slices times samples.
-        let sizes =
-            objective.terms.iter().filter(|term| term.spec.role == role).map(|term| term.family.mean_size());
+        let sizes = objective
+            .terms
+            .iter()
+            .filter(|term| term.spec.role == pick.role())
+            .map(|term| term.family.mean_size());
         let largest = sizes.fold(1.0, f64::max) as usize;
         let per_chunk = (CHUNK_TOUCHES / largest).clamp(1, CHUNK);
         let in_flight = (CHUNK_TOUCHES * IN_FLIGHT / (largest * per_chunk)).clamp(2, IN_FLIGHT);

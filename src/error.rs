@@ -76,6 +76,14 @@ pub enum ConfigError {
     /// A demand that no term of the objective serves.
     #[error("nothing is demanded: demand at least one pixel and a dimension that a term sees")]
     NoDemand,
+    /// Sweeps were asked for, but a term has no closed form over all slices.
+    #[error("term {term} cannot be swept, since {why}: use slices")]
+    NotInClosedForm {
+        /// Position of the term.
+        term: usize,
+        /// What stands against it.
+        why: &'static str,
+    },
     /// The list of domains does not fit the table.
     #[error("{given} domains for {dims} dimensions: give one domain per dimension")]
     DomainCount {

@@ -103,6 +103,7 @@ mod pull;
 #[cfg(feature = "render")]
 pub mod render;
 mod row;
+mod run;
 #[cfg(feature = "render")]
 pub mod sampler;
 mod stream;
@@ -112,6 +113,7 @@ mod term;
 mod transport;
 
 pub use class::{Classes, Form};
+pub use cramer::Sweeps;
 pub use demand::Demand;
 pub use descent::{Descent, Schedule, Shape};
 pub use domain::{BELOW_ONE, Domain};
@@ -120,7 +122,8 @@ pub use kernel::{Kernel, SpatialKernel, SpatialTap, Tap, TemporalKernel};
 pub use lattice::{Extent, Site};
 pub use metadata::{BoundEstimate, BoundRecord, KernelTaps, Metadata, RunRecord};
 pub use objective::{Objective, Slice};
-pub use optimizer::{Config, Ended, Optimizer, RunReport, StepReport, Until};
+pub use optimizer::{Config, Optimizer};
+pub use run::{Ended, RunReport, StepReport, Until, Work};
 pub use table::SampleTable;
 pub use target::{Projected, Target};
 pub use term::{DimensionGroup, Role, Slicing, Term};

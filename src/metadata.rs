@@ -93,6 +93,9 @@ pub struct BoundEstimate {
 pub struct RunRecord {
     /// Slices per pixel and frame that the run was planned for; with `steps` the length of its schedules.
     pub slices_per_class: u64,
+    /// Sweeps that the run was planned for.
+    #[serde(default)]
+    pub sweeps: u64,
     /// Whether the run was broken off or converged before all of them were drawn.
     #[serde(default)]
     pub ended_early: bool,

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use crate::class::{Classes, Form, Wanted};
+use crate::cramer;
 use crate::demand::Demand;
 use crate::domain::Domain;
 use crate::error::ConfigError;
@@ -40,6 +41,7 @@ pub struct Objective {
     pub(crate) dims: usize,
     pub(crate) domains: Vec<Domain>,
     pub(crate) terms: Vec<PlannedTerm>,
+    pub(crate) wanted: Wanted,
 }
 
 /// Share of the work that goes to the whole table, and to its frames, relative to the kernels.
@@ -133,7 +135,7 @@ impl Objective {
         for term in &mut planned {
             term.rate = slices_of(term) / total * slices as f64 / term.slicer.per_subset() as f64;
         }
-        Ok(Self { extent, dims, domains: domains.to_vec(), terms: planned })
+        Ok(Self { extent, dims, domains: domains.to_vec(), terms: planned, wanted })
     }
 
     /// The terms for blue-noise error: each group under each kernel, and as much of the whole table and of each
@@ -195,6 +197,24 @@ impl Objective {
         let lattice: f64 = self.terms.iter().map(slices).sum();
         let all: f64 = self.terms.iter().map(|term| term.rate * term.slicer.per_subset() as f64).sum();
         (if lattice > 0.0 { lattice } else { all }) / classes(&self.terms, self.extent) as f64
+    }
+
+    /// All slices at once: the squared sliced Cramér distance between filtered samples and target, meant over pixels, and
+    /// its gradient with respect to every coordinate, in `f64`.
+    ///
+    /// For a pixel with filter `w` it is the mean over directions `theta` of
+    /// `∫ (F − G)² ds`, where `F` is the distribution function of the samples' projections, weighted by `w`, and `G` that
+    /// of the cube: the squared filtered error of a half-space, meant over half-spaces. Terms in the role of
+    /// [`Role::Descend`] are meant by weight. Exact, without random numbers; O(samples · pairs under a filter), run in
+    /// parallel. `points` are the values of a table, in its order.
+    ///
+    /// # Errors
+    /// A term without a closed form: one whose classes are not a lattice's, or that sees a torus. A list of another
+    /// length than the table's, or values outside `[0, 1)`.
+    pub fn cramer(&self, points: &[f64]) -> Result<(f64, Vec<f64>), ConfigError> {
+        cramer::check(self)?;
+        self.check_points(points)?;
+        Ok(cramer::value_and_gradient(self, points))
     }
 
     /// Mean over `slices` of `(n / N) W2²` and its gradient with respect to every coordinate, in `f64`.

@@ -6,15 +6,18 @@ use std::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 
 use crate::class::Form;
+use crate::cramer::{self, Sweeper, Sweeps};
 use crate::demand::Demand;
 use crate::descent::{self, Descent, Schedule, Walker};
 use crate::domain::Domain;
+use crate::draw::Pick;
 use crate::engine::Engine;
 use crate::error::ConfigError;
 use crate::kernel::{Kernel, SpatialKernel, TemporalKernel};
 use crate::lattice::{Extent, MOST_DIMS};
 use crate::objective::Objective;
 use crate::pull::Pull;
+use crate::run::{Ended, Plateau, RunReport, StepReport, Until, Work};
 use crate::table::SampleTable;
 use crate::term::{DimensionGroup, Role, Slicing, Term};
 
@@ -31,8 +34,10 @@ pub struct Config {
     pub terms: Vec<Term>,
     /// How slices are drawn.
     pub slicing: Slicing,
-    /// How steps move the samples.
+    /// How steps of slices move the samples.
     pub descent: Descent,
+    /// How sweeps move them.
+    pub sweeps: Sweeps,
     /// How far the terms in the role of [`Role::Balance`] move the samples towards their targets, over a run.
     pub balance: Schedule,
     /// Names every random number: the same seed gives the same bits.
@@ -58,78 +63,11 @@ impl Config {
             terms: Objective::blue_noise(&[kernel], Form::LevelSets, &groups, &extent),
             slicing: Slicing::default(),
             descent: Descent::default(),
+            sweeps: Sweeps::default(),
             balance: Schedule::constant(1.0),
             seed: 0,
         }
     }
-}
-
-/// When a run ends.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Until {
-    /// After this many slices per pixel and frame (rounded up to whole steps).
-    SlicesPerClass(u64),
-    /// After this many epochs, of `directions` slices per pixel and frame each.
-    Epochs(u64),
-    /// After about this many seconds. A brief calibration fixes the number of steps that fit, schedules follow that
-    /// number, and [`RunReport::slices_per_class`] makes the very same table again, anywhere.
-    Seconds(f64),
-    /// As soon as the mean squared displacement falls by less than the share `improvement` from one window to the
-    /// next, and at the latest after `at_most` slices per pixel and frame, the number that schedules follow.
-    Converged {
-        /// Least relative improvement worth going on for, in `[0, 1)`.
-        improvement: f64,
-        /// Length of a window, in steps.
-        window_steps: u64,
-        /// Slices per pixel and frame.
-        at_most: u64,
-    },
-}
-
-/// What a run tells its caller after each step.
-#[derive(Clone, Copy, Debug)]
-pub struct StepReport {
-    /// Steps taken in this run.
-    pub step: u64,
-    /// Steps that the run is planned to take.
-    pub steps: u64,
-    /// Slices drawn in this run, over all terms.
-    pub slices: u64,
-    /// Root mean square distance along the slices between the samples and their targets, before the step. A noisy
-    /// sign of progress; the objective itself is measured by [`crate::metrics::bound()`].
-    pub displacement: f64,
-    /// Step size.
-    pub rate: f64,
-    /// Time since the first step of the run.
-    pub elapsed: Duration,
-}
-
-/// How a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Ended {
-    /// All planned steps were taken.
-    Finished,
-    /// The rule of [`Until::Converged`] held.
-    Converged,
-    /// The caller's closure broke it off.
-    Stopped,
-}
-
-/// What a run did.
-#[derive(Clone, Copy, Debug)]
-pub struct RunReport {
-    /// Why it ended.
-    pub ended: Ended,
-    /// Steps taken.
-    pub steps: u64,
-    /// Slices drawn, over all terms.
-    pub slices: u64,
-    /// Slices per pixel and frame that the run was planned for. As [`Until::SlicesPerClass`] it gives the same steps.
-    pub slices_per_class: u64,
-    /// Time of the steps, without calibration.
-    pub elapsed: Duration,
 }
 
 /// Optimises a table of white noise, or a given one.
@@ -141,6 +79,9 @@ pub struct Optimizer {
     engine: Engine,
     pull: Pull,
     steps: u64,
+    /// Planned when it is first needed.
+    sweeper: Option<Sweeper>,
+    swept: u64,
 }
 
 impl Optimizer {
@@ -168,6 +109,7 @@ impl Optimizer {
 
     fn with(config: Config, objective: Objective) -> Result<Self, ConfigError> {
         config.descent.validate()?;
+        config.sweeps.validate()?;
         config.balance.validate()?;
         let points = crate::stream::uniforms(config.seed, config.extent.samples() * config.dims);
         let coordinates = points.len();
@@ -176,6 +118,8 @@ impl Optimizer {
             walker: Walker::new(config.descent, coordinates),
             engine: Engine::new(),
             steps: 0,
+            sweeper: None,
+            swept: 0,
             pull,
             points,
             objective,
@@ -228,13 +172,13 @@ impl Optimizer {
     ///
     /// For schedules of your own; [`Optimizer::run`] follows those of the configuration.
     pub fn step(&mut self, rate: f64, balance: f64) -> (f64, u64) {
-        let Self { engine, objective, config, steps, points, pull, walker } = self;
+        let Self { engine, objective, config, steps, points, pull, walker, .. } = self;
         let Config { domains, seed, .. } = config;
-        engine.pull(objective, (*seed, *steps, Role::Descend), points, pull);
+        engine.pull(objective, (*seed, *steps, Pick::Batch(Role::Descend)), points, pull);
         let displacement = (pull.squares / pull.mass.max(f64::MIN_POSITIVE)).sqrt();
         let slices = pull.slices;
         walker.step(rate, domains, points, pull);
-        engine.pull(objective, (*seed, *steps, Role::Balance), points, pull);
+        engine.pull(objective, (*seed, *steps, Pick::Batch(Role::Balance)), points, pull);
         if pull.slices > 0 {
             descent::project(balance, domains, points, pull);
         }
@@ -242,35 +186,84 @@ impl Optimizer {
         (displacement, slices + pull.slices)
     }
 
-    /// Takes steps until `until`, or until `observe` breaks off. The table keeps what was reached.
-    ///
-    /// A run begins with fresh moments and at the start of the schedule; its slices go on where the last run's ended.
+    /// Sweeps once over all samples: each moves `rate` times along the gradient of the objective over all slices at once
+    /// ([`Objective::cramer`]). Half-way and at its end one slice of every class in the role of [`Role::Balance`] moves them
+    /// `balance` of the way.
+    /// Returns the root mean square pull on a coordinate.
     ///
     /// # Errors
-    /// A number of seconds or an improvement outside its range. Nothing is changed then.
+    /// A descended term that has no closed form ([`ConfigError::NotInClosedForm`]).
+    pub fn sweep(&mut self, rate: f64, balance: f64) -> Result<f64, ConfigError> {
+        let mut squares = 0.0;
+        for step in 0..cramer::STEPS {
+            squares += self.sweep_step(step, rate, balance)?;
+        }
+        Ok((squares / cramer::STEPS as f64).sqrt())
+    }
+
+    /// One step of a sweep. Returns the mean square pull.
+    fn sweep_step(&mut self, step: usize, rate: f64, balance: f64) -> Result<f64, ConfigError> {
+        let Self { engine, objective, config, points, pull, sweeper, swept, .. } = self;
+        let Config { domains, seed, sweeps, .. } = config;
+        let sweeper = match sweeper {
+            Some(sweeper) => sweeper,
+            none => none.insert(Sweeper::new(objective, sweeps)?),
+        };
+        if step == 0 {
+            sweeper.load(points);
+            sweeper.shuffle(*seed, *swept);
+        }
+        let squares = sweeper.step(step, rate, domains, points);
+        if (step + 1) % (cramer::STEPS / BALANCES) == 0 {
+            let turn = *swept * BALANCES as u64 + (step / (cramer::STEPS / BALANCES)) as u64;
+            engine.pull(objective, (*seed, turn, Pick::Each(Role::Balance)), points, pull);
+            if pull.slices > 0 {
+                descent::project(balance, domains, points, pull);
+                sweeper.load(points);
+            }
+        }
+        if step + 1 == cramer::STEPS {
+            *swept += 1;
+        }
+        Ok(squares)
+    }
+
+    /// Takes steps until `until`, or until `observe` breaks off. The table keeps what was reached.
+    ///
+    /// A run begins with fresh moments and at the start of the schedules; its slices and sweeps go on where the last
+    /// run's ended.
+    ///
+    /// # Errors
+    /// A number of seconds or an improvement outside its range; sweeps of an objective that has no closed form. Nothing is
+    /// changed then.
     pub fn run(
         &mut self,
         until: Until,
         mut observe: impl FnMut(&StepReport) -> ControlFlow<()>,
     ) -> Result<RunReport, ConfigError> {
-        let slices_per_class = self.plan(until)?;
-        let steps = (slices_per_class as f64 / self.objective.slices_per_class_and_step()).ceil() as u64;
+        let work = self.plan(until)?;
+        let per_step = self.objective.slices_per_class_and_step();
+        let batches = (work.slices_per_class as f64 / per_step).ceil() as u64;
+        let steps = batches.saturating_add(work.sweeps.saturating_mul(cramer::STEPS as u64));
         self.walker = Walker::new(self.config.descent, self.points.len());
         let begin = Instant::now();
         let mut plateau = Plateau::default();
-        let mut report = RunReport {
-            ended: Ended::Finished,
-            steps: 0,
-            slices: 0,
-            slices_per_class,
-            elapsed: Duration::ZERO,
-        };
+        let mut report =
+            RunReport { ended: Ended::Finished, steps: 0, slices: 0, work, elapsed: Duration::ZERO };
         for step in 0..steps {
-            let progress = step as f64 / steps as f64;
-            let rate = self.config.descent.rate().at(progress);
-            let (displacement, slices) = self.step(rate, self.config.balance.at(progress));
+            let (displacement, rate) = if step < batches {
+                let progress = step as f64 / batches as f64;
+                let rate = self.config.descent.rate().at(progress);
+                let (displacement, slices) = self.step(rate, self.config.balance.at(progress));
+                report.slices += slices;
+                (displacement, rate)
+            } else {
+                let progress = (step - batches) as f64 / (steps - batches) as f64;
+                let rate = self.config.sweeps.of_a_run(work.sweeps).at(progress);
+                let part = (step - batches) as usize % cramer::STEPS;
+                (self.sweep_step(part, rate, self.config.balance.at(progress))?.sqrt(), rate)
+            };
             report.steps += 1;
-            report.slices += slices;
             let elapsed = begin.elapsed();
             let seen =
                 StepReport { step: step + 1, steps, slices: report.slices, displacement, rate, elapsed };
@@ -286,67 +279,93 @@ impl Optimizer {
             }
         }
         report.elapsed = begin.elapsed();
-        // The buffers of a run are as large as its largest subset; nobody needs them until the next.
+        // Buffers are as large as the largest subset, and copies of the table; nobody needs them until the next run.
         self.engine = Engine::new();
+        self.sweeper = None;
         Ok(report)
     }
 
-    /// Slices per pixel and frame that a run is planned for.
-    fn plan(&mut self, until: Until) -> Result<u64, ConfigError> {
+    /// The work of a run.
+    fn plan(&mut self, until: Until) -> Result<Work, ConfigError> {
         let out_of_range = |name, value, expected| Err(ConfigError::OutOfRange { name, value, expected });
-        match until {
-            Until::SlicesPerClass(slices) => Ok(slices),
-            Until::Epochs(epochs) => Ok(epochs.saturating_mul(self.config.slicing.directions as u64)),
+        let slices = |slices_per_class| Work { slices_per_class, sweeps: 0 };
+        let work = match until {
+            Until::SlicesPerClass(slices_per_class) => slices(slices_per_class),
+            Until::Epochs(epochs) => slices(epochs.saturating_mul(self.config.slicing.directions as u64)),
+            Until::Sweeps(sweeps) => Work { slices_per_class: 0, sweeps },
+            Until::Work(work) => work,
             Until::Converged { improvement, .. } if !(0.0..1.0).contains(&improvement) => {
-                out_of_range("the least improvement", improvement, "in [0, 1)")
+                return out_of_range("the least improvement", improvement, "in [0, 1)");
             }
-            Until::Converged { window_steps: 0, .. } => out_of_range("the window", 0.0, "of at least 1 step"),
-            Until::Converged { at_most, .. } => Ok(at_most),
+            Until::Converged { window_steps: 0, .. } => {
+                return out_of_range("the window", 0.0, "of at least 1 step");
+            }
+            Until::Converged { at_most, .. } => slices(at_most),
             Until::Seconds(seconds) if !(seconds > 0.0 && seconds <= 1e9) => {
-                out_of_range("the number of seconds", seconds, "above 0, at most 1e9")
+                return out_of_range("the number of seconds", seconds, "above 0, at most 1e9");
             }
-            Until::Seconds(seconds) => {
-                let steps = seconds / self.seconds_per_step();
-                Ok((steps * self.objective.slices_per_class_and_step()).max(1.0) as u64)
-            }
+            Until::Seconds(seconds) => self.fit(seconds)?,
+        };
+        if work.sweeps > 0 {
+            cramer::check(&self.objective)?;
         }
+        Ok(work)
+    }
+
+    /// The work that fits into a time: all of it sweeps, unless half of it is enough for a good number of slices.
+    fn fit(&mut self, seconds: f64) -> Result<Work, ConfigError> {
+        let per_step = self.objective.slices_per_class_and_step();
+        if cramer::check(&self.objective).is_err() {
+            let slices = seconds / self.seconds_per_batch() * per_step;
+            return Ok(Work { slices_per_class: slices.max(1.0) as u64, sweeps: 0 });
+        }
+        let seconds_per_sweep = self.seconds_per_sweep()?;
+        let slices = 0.5 * seconds / self.seconds_per_batch() * per_step;
+        let (slices, share) = if slices >= ENOUGH_SLICES { (slices as u64, 0.5) } else { (0, 1.0) };
+        let sweeps = (share * seconds / seconds_per_sweep).max(1.0) as u64;
+        Ok(Work { slices_per_class: slices, sweeps })
     }
 
     /// Times a few steps that leave the table as it is.
-    fn seconds_per_step(&mut self) -> f64 {
-        const ENOUGH: Duration = Duration::from_millis(30);
+    fn seconds_per_batch(&mut self) -> f64 {
         let steps = self.steps;
         // The first step grows the buffers and does not count.
         self.step(0.0, 0.0);
-        let (begin, mut timed) = (Instant::now(), 0);
-        while begin.elapsed() < ENOUGH {
+        let seconds = mean_seconds(|| {
             self.step(0.0, 0.0);
-            timed += 1;
-        }
-        let mean = begin.elapsed().as_secs_f64() / f64::from(timed);
+        });
         self.steps = steps;
-        mean
+        seconds
+    }
+
+    /// Times a few sixteenths of a sweep that leave the table as it is.
+    fn seconds_per_sweep(&mut self) -> Result<f64, ConfigError> {
+        let swept = self.swept;
+        self.sweep_step(0, 0.0, 0.0)?;
+        let mut step = 0;
+        let mut outcome = Ok(0.0);
+        let seconds = mean_seconds(|| {
+            outcome = self.sweep_step(step, 0.0, 0.0);
+            step = (step + 1) % cramer::STEPS;
+        });
+        self.swept = swept;
+        outcome.map(|_| seconds * cramer::STEPS as f64)
     }
 }
 
-/// Mean squared displacement of this and the last window.
-#[derive(Default)]
-struct Plateau {
-    last: Option<f64>,
-    sum: f64,
-    steps: u64,
-}
+/// Turns of the balance per sweep: with one alone, the bias is three times as large.
+const BALANCES: usize = 2;
 
-impl Plateau {
-    fn reached(&mut self, squared: f64, improvement: f64, window: u64) -> bool {
-        self.sum += squared;
-        self.steps += 1;
-        if self.steps < window {
-            return false;
-        }
-        let mean = self.sum / window as f64;
-        let stalled = self.last.is_some_and(|last| mean > last * (1.0 - improvement));
-        *self = Self { last: Some(mean), sum: 0.0, steps: 0 };
-        stalled
+/// Slices per pixel and frame from which on it is worth beginning with them.
+const ENOUGH_SLICES: f64 = 64.0;
+
+/// Mean time of a call, over as many as make a reliable figure.
+fn mean_seconds(mut call: impl FnMut()) -> f64 {
+    const ENOUGH: Duration = Duration::from_millis(15);
+    let (begin, mut timed) = (Instant::now(), 0);
+    while begin.elapsed() < ENOUGH {
+        call();
+        timed += 1;
     }
+    begin.elapsed().as_secs_f64() / f64::from(timed)
 }

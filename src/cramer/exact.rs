@@ -16,9 +16,10 @@ pub(crate) fn value_and_gradient(objective: &Objective, points: &[f64]) -> (f64,
     let terms = || objective.terms.iter().filter(|term| term.spec.role == Role::Descend);
     let weights: f64 = terms().map(|term| term.spec.weight).sum();
     for term in terms() {
-        value += term.spec.weight / weights * add_term(objective, term, points, |coordinate, slope| {
-            gradient[coordinate] += term.spec.weight / weights * slope;
-        });
+        value += term.spec.weight / weights
+            * add_term(objective, term, points, |coordinate, slope| {
+                gradient[coordinate] += term.spec.weight / weights * slope;
+            });
     }
     (value, gradient)
 }

@@ -139,7 +139,8 @@ impl FieldTable {
         let leans = table(&|node, x| 2.0 * node.weight * lean(node.q, x));
         let bumps = table(&|node, x| bump(node.q, x));
         if dims > 2 {
-            let [leans, bumps] = [leans, bumps].map(|table| table.iter().map(|&value| value as f32).collect());
+            let [leans, bumps] =
+                [leans, bumps].map(|table| table.iter().map(|&value| value as f32).collect());
             return Self::Nodes { leans, bumps };
         }
         let mut slopes = vec![0.0; (GRID + 1) * (GRID + 1)];
@@ -178,8 +179,7 @@ impl FieldTable {
                 let nodes = leans.chunks_exact(GRID + 1).zip(bumps.chunks_exact(GRID + 1));
                 for (leans, bumps) in nodes {
                     for lane in 0..LANES {
-                        let product: f32 =
-                            points.iter().map(|row| Cell::of(row[lane]).look(bumps)).product();
+                        let product: f32 = points.iter().map(|row| Cell::of(row[lane]).look(bumps)).product();
                         for (slope, row) in gradient.iter_mut().zip(points) {
                             let cell = Cell::of(row[lane]);
                             // A bump is never 0: it is at least ½ erf(q) / q at an end of the interval.

@@ -22,33 +22,32 @@ mod planes;
 mod sweep;
 
 pub(crate) use exact::value_and_gradient;
-pub(crate) use sweep::Sweeper;
+pub use sweep::Sweeps;
+pub(crate) use sweep::{STEPS, Sweeper};
 
-use crate::class::Classes;
 use crate::domain::Domain;
+use crate::error::ConfigError;
 use crate::objective::Objective;
-use crate::plan::PlannedTerm;
 use crate::target::Target;
 use crate::term::Role;
 
-/// Why the closed form does not hold for a term, if it doesn't.
-fn obstacle(objective: &Objective, term: &PlannedTerm) -> Option<&'static str> {
-    if term.family.taps().is_none() {
-        return Some("its classes are not the pixels of a lattice");
+/// Refuses an objective with a descended term for which the closed form does not hold.
+pub(crate) fn check(objective: &Objective) -> Result<(), ConfigError> {
+    for (index, term) in objective.terms.iter().enumerate() {
+        let why = if term.spec.role != Role::Descend {
+            continue;
+        } else if term.family.taps().is_none() {
+            "its classes are not the pixels of a lattice"
+        } else if term.spec.target != Target::UniformCube {
+            "its target is not the uniform cube"
+        } else if term.spec.dims.iter().any(|&dim| objective.domains[dim] == Domain::Torus) {
+            "it sees a dimension that is a torus"
+        } else {
+            continue;
+        };
+        return Err(ConfigError::NotInClosedForm { term: index, why });
     }
-    if term.spec.target != Target::UniformCube {
-        return Some("its target is not the uniform cube");
-    }
-    if term.spec.dims.iter().any(|&dim| objective.domains[dim] == Domain::Torus) {
-        return Some("it sees a dimension that is a torus");
-    }
-    None
-}
-
-/// The first term in the role of descent that sweeps cannot serve, and why.
-pub(crate) fn first_obstacle(objective: &Objective) -> Option<(usize, &'static str)> {
-    let terms = objective.terms.iter().enumerate().filter(|(_, term)| term.spec.role == Role::Descend);
-    terms.filter_map(|(index, term)| Some((index, obstacle(objective, term)?))).next()
+    Ok(())
 }
 
 /// Mean length of the projection of a unit vector in `dims` dimensions on a random direction:

@@ -73,15 +73,17 @@ impl Pairs {
         self.reach
     }
 
-    /// Pairs per sample.
-    pub(super) fn neighbours(&self) -> usize {
-        self.taps.len() * self.extent.spp
-    }
-
     /// Adds `factor` times the pull on the samples of a run, one row of lanes per dimension of the table: the mean unit
     /// vector away from their neighbours, less that away from a uniform point.
     #[inline(always)]
-    pub(super) fn add_pull(&self, planes: &Planes, margin: usize, run: Run, factors: &[f32], pulls: &mut [Row]) {
+    pub(super) fn add_pull(
+        &self,
+        planes: &Planes,
+        margin: usize,
+        run: Run,
+        factors: &[f32],
+        pulls: &mut [Row],
+    ) {
         match self.dims.len() {
             1 => self.add::<1>(1, planes, margin, run, factors, pulls),
             2 => self.add::<2>(2, planes, margin, run, factors, pulls),

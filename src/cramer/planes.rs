@@ -35,7 +35,8 @@ impl Planes {
         let rows = (dims + usize::from(partial)) * extent.spp * extent.frames * extent.height;
         let mut planes = Self { extent, dims, margin, stride, values: vec![0.0; rows * stride], partial };
         if partial {
-            for run in (0..planes.runs()).map(|index| planes.run(index)) {
+            for index in 0..planes.runs() {
+                let run = planes.run(index);
                 for lane in 0..planes.len(run) {
                     let flag = wanted.site(planes.site(run, lane));
                     planes.put(dims, run, lane, if flag { 1.0 } else { 0.0 });
@@ -92,7 +93,8 @@ impl Planes {
 
     /// Copies a table in.
     pub(super) fn load(&mut self, points: &[f32]) {
-        for run in (0..self.runs()).map(|index| self.run(index)) {
+        for index in 0..self.runs() {
+            let run = self.run(index);
             for lane in 0..self.len(run) {
                 let first = self.first(run, lane);
                 self.set(run, lane, &points[first..first + self.dims]);

@@ -3,11 +3,14 @@
 use pulp::{Arch, NullaryFnOnce};
 use rand::seq::SliceRandom;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::mean_projection;
 use super::pairs::Pairs;
 use super::planes::{Planes, Run};
+use crate::descent::Schedule;
 use crate::domain::Domain;
+use crate::error::ConfigError;
 use crate::objective::Objective;
 use crate::row::{LANES, Row};
 use crate::stream::{self, Purpose};
@@ -15,6 +18,41 @@ use crate::term::Role;
 
 /// Steps per sweep: the samples of a step move together, so that they had better not be neighbours.
 pub(crate) const STEPS: usize = 16;
+
+/// How sweeps move the samples.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sweeps {
+    /// Step size: `x ← x + rate · pull`, where the pull on a sample is the mean unit vector away from its neighbours less that
+    /// away from a uniform point, times `d c_d` in a group of `d` dimensions (1.27 in the plane). A run of `n` sweeps does
+    /// not go below the first value divided by `n`: there is no time for more.
+    pub rate: Schedule,
+    /// Pairs held together less than this share of the strongest are left out; in `[0, 1)`.
+    pub truncation: f64,
+}
+
+impl Default for Sweeps {
+    fn default() -> Self {
+        Self { rate: Schedule::geometric(5.0, 0.3), truncation: 0.02 }
+    }
+}
+
+impl Sweeps {
+    /// The step size over a run of so many sweeps.
+    pub(crate) fn of_a_run(&self, sweeps: u64) -> Schedule {
+        let Schedule { first, last, shape } = self.rate;
+        Schedule { first, last: last.max(first / sweeps.max(1) as f64), shape }
+    }
+
+    pub(crate) fn validate(&self) -> Result<(), ConfigError> {
+        self.rate.validate()?;
+        let (name, value, expected) = ("the truncation of sweeps", self.truncation, "in [0, 1)");
+        if (0.0..1.0).contains(&value) {
+            Ok(())
+        } else {
+            Err(ConfigError::OutOfRange { name, value, expected })
+        }
+    }
+}
 
 /// A table on its way through sweeps.
 ///
@@ -34,11 +72,15 @@ pub(crate) struct Sweeper {
 }
 
 impl Sweeper {
-    /// Plans the sweeps of an objective whose descended terms all have a closed form.
-    pub(crate) fn new(objective: &Objective, truncation: f64) -> Self {
+    /// Plans the sweeps of an objective.
+    ///
+    /// # Errors
+    /// A descended term without a closed form.
+    pub(crate) fn new(objective: &Objective, sweeps: &Sweeps) -> Result<Self, ConfigError> {
+        super::check(objective)?;
         let (extent, dims) = (objective.extent, objective.dims);
         let planned = || objective.terms.iter().filter(|term| term.spec.role == Role::Descend);
-        let terms: Vec<Pairs> = planned().map(|term| Pairs::new(term, extent, truncation)).collect();
+        let terms: Vec<Pairs> = planned().map(|term| Pairs::new(term, extent, sweeps.truncation)).collect();
         // A slice's pull is its group's number of dimensions times its mean displacement, a coordinate's pull the mean
         // over the terms that see it by weight. So it is here, where directions are meant already.
         let mut seen = vec![0.0; dims];
@@ -58,17 +100,16 @@ impl Sweeper {
             (0..planes.len(run)).any(|lane| planes.wants(run, lane))
         };
         let order = (0..planes.runs() as u32).filter(wanted).collect();
-        Self { arch: Arch::new(), terms, factors, margin, planes, dims, order, pulls: Vec::new() }
+        Ok(Self { arch: Arch::new(), terms, factors, margin, planes, dims, order, pulls: Vec::new() })
     }
 
-    /// Pairs of samples that a sweep visits.
-    pub(crate) fn pairs(&self) -> usize {
-        self.order.len() * LANES * self.terms.iter().map(Pairs::neighbours).sum::<usize>()
-    }
-
-    /// Begins a sweep at this table, in an order named by seed and sweep.
-    pub(crate) fn begin(&mut self, seed: u64, sweep: u64, points: &[f32]) {
+    /// Reads the table anew.
+    pub(crate) fn load(&mut self, points: &[f32]) {
         self.planes.load(points);
+    }
+
+    /// Begins a sweep, in an order named by seed and sweep.
+    pub(crate) fn shuffle(&mut self, seed: u64, sweep: u64) {
         self.order.sort_unstable();
         self.order.shuffle(&mut stream::generator(seed, Purpose::Sweep, sweep, 0));
         // Within a step the order doesn't matter, and neighbours share rows.
@@ -83,29 +124,33 @@ impl Sweeper {
     /// Moves the samples of one step of the sweep by `rate` times their pull. Returns the mean square of the pull.
     pub(crate) fn step(&mut self, step: usize, rate: f64, domains: &[Domain], points: &mut [f32]) -> f64 {
         let size = self.step_size();
-        let Some(runs) = self.order.chunks(size).nth(step) else { return 0.0 };
-        let mut pulls = std::mem::take(&mut self.pulls);
-        pulls.resize(size * self.dims, [0.0; LANES]);
-        let tasks = pulls.par_chunks_exact_mut(self.dims).zip(runs);
+        let Self { arch, terms, factors, margin, planes, dims, order, pulls } = self;
+        let (dims, margin) = (*dims, *margin);
+        let Some(runs) = order.chunks(size).nth(step) else { return 0.0 };
+        pulls.resize(size * dims, [0.0; LANES]);
+        let tasks = pulls.par_chunks_exact_mut(dims).zip(runs);
         tasks.with_min_len(RUNS_PER_TASK).for_each(|(pulls, &run)| {
-            self.arch.dispatch(PullOfRun { sweeper: self, run: self.planes.run(run as usize), pulls });
+            let run = planes.run(run as usize);
+            arch.dispatch(PullOfRun { terms, factors, planes, margin, run, pulls });
         });
         let (mut squares, mut moved) = (0.0, 0);
-        for (pulls, &run) in pulls.chunks_exact(self.dims).zip(runs) {
-            let run = self.planes.run(run as usize);
-            for lane in (0..self.planes.len(run)).filter(|&lane| self.planes.wants(run, lane)) {
-                let first = self.planes.first(run, lane);
-                let point = &mut points[first..first + self.dims];
+        for (pulls, &run) in pulls.chunks_exact(dims).zip(runs) {
+            let run = planes.run(run as usize);
+            for lane in 0..planes.len(run) {
+                if !planes.wants(run, lane) {
+                    continue;
+                }
+                let first = planes.first(run, lane);
+                let point = &mut points[first..first + dims];
                 for ((value, pull), domain) in point.iter_mut().zip(pulls).zip(domains) {
                     squares += f64::from(pull[lane] * pull[lane]);
                     *value = domain.admit(*value + rate as f32 * pull[lane]);
                 }
                 moved += 1;
-                self.planes.set(run, lane, point);
+                planes.set(run, lane, point);
             }
         }
-        self.pulls = pulls;
-        squares / (moved * self.dims).max(1) as f64
+        squares / (moved * dims).max(1) as f64
     }
 }
 
@@ -114,7 +159,10 @@ const RUNS_PER_TASK: usize = 2;
 
 /// The pull on one run, compiled once per instruction set.
 struct PullOfRun<'a> {
-    sweeper: &'a Sweeper,
+    terms: &'a [Pairs],
+    factors: &'a [Vec<f32>],
+    planes: &'a Planes,
+    margin: usize,
     run: Run,
     pulls: &'a mut [Row],
 }
@@ -124,10 +172,10 @@ impl NullaryFnOnce for PullOfRun<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { sweeper: Sweeper { terms, factors, margin, planes, .. }, run, pulls } = self;
+        let Self { terms, factors, planes, margin, run, pulls } = self;
         pulls.fill([0.0; LANES]);
         for (pairs, factors) in terms.iter().zip(factors) {
-            pairs.add_pull(planes, *margin, run, factors, pulls);
+            pairs.add_pull(planes, margin, run, factors, pulls);
         }
     }
 }
