@@ -228,6 +228,11 @@ impl Optimizer {
     ///
     /// For schedules of your own; [`Optimizer::run`] follows those of the configuration.
     pub fn step(&mut self, rate: f64, balance: f64) -> (f64, u64) {
+        // On a thread of the pool from here on, instead of going there and back for each of the loops.
+        rayon::scope(|_| self.step_in_pool(rate, balance))
+    }
+
+    fn step_in_pool(&mut self, rate: f64, balance: f64) -> (f64, u64) {
         let Self { engine, objective, config, steps, points, pull, walker } = self;
         let Config { domains, seed, .. } = config;
         engine.pull(objective, (*seed, *steps, Role::Descend), points, pull);
