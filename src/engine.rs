@@ -14,7 +14,7 @@ use crate::direction::Directions;
 use crate::draw::{Draw, Order, Pick};
 use crate::lanes::{self, Gather, LaneBuffers};
 use crate::law::{LaneLaw, Tabulated, Trapezoid};
-use crate::long::{self, LongBuffers, LongLaw};
+use crate::long::{self, LongBuffers, LongLaw, LongShape};
 use crate::network::Network;
 use crate::objective::Objective;
 use crate::plan::PlannedTerm;
@@ -189,7 +189,7 @@ impl Chunk {
         }
         if n <= term.longest {
             let law = match block {
-                None => LaneLaw::Trapezoid(Trapezoid::new(directions)),
+                None => LaneLaw::Trapezoid(Trapezoid::new(simd, directions)),
                 Some(block) => {
                     let planned = term.grids.get(&n);
                     if planned.is_none() {
@@ -206,20 +206,18 @@ impl Chunk {
         }
         for lane in 0..*count {
             let component = |dim: usize| theta[dim][lane];
-            let law = match block {
-                Some(block) if !on_axis[lane] => {
-                    let components = || theta.iter().map(|row| f64::from(row[lane]));
-                    let lowest = components().map(|component| component.min(0.0)).sum();
-                    let extent = components().map(f64::abs).sum();
-                    LongLaw::Tabulated { block, lane, lowest, extent }
-                }
+            let components = || theta.iter().map(|row| f64::from(row[lane]));
+            let lowest = components().map(|component| component.min(0.0)).sum();
+            let extent = components().map(f64::abs).sum();
+            let shape = match block {
+                Some(block) if !on_axis[lane] => LongShape::Tabulated { block, lane },
                 // A coordinate axis has the law of one dimension; otherwise there are at most two.
-                Some(_) => LongLaw::Closed(term.spec.target.project(&[1.0])),
-                None => {
-                    let direction = [0, 1].map(|dim| theta.get(dim).map_or(0.0, |row| f64::from(row[lane])));
-                    LongLaw::Closed(term.spec.target.project(&direction))
+                _ => {
+                    let longer = components().map(f64::abs).fold(0.0, f64::max);
+                    LongShape::Trapezoid { longer, shorter: extent - longer }
                 }
             };
+            let law = LongLaw { lowest, extent, shape };
             self.squares += long::transport(&gather, component, &law, weights, long, moves);
         }
     }

@@ -7,7 +7,7 @@
 
 use pulp::Simd;
 
-use crate::law::LaneLaw;
+use crate::law::{self, LaneLaw};
 use crate::network::Network;
 use crate::row::{LANES, Row};
 
@@ -25,6 +25,10 @@ pub(crate) struct LaneBuffers {
     projections: Vec<Row>,
     keys: Vec<[u32; LANES]>,
     means: Vec<Row>,
+    /// Means of the square root over `[0, 1]`, `[1, 2]`, ….
+    root_means: Vec<f32>,
+    /// Sums of products over the lanes that are four apart, per sample and dimension.
+    quarters: Vec<[f32; LANES / 4]>,
     /// As many as a masked position can name, so that it is inside without a check.
     targets: Box<[Row; LONGEST]>,
 }
@@ -37,6 +41,8 @@ impl Default for LaneBuffers {
             projections: Vec::new(),
             keys: Vec::new(),
             means: Vec::new(),
+            root_means: Vec::new(),
+            quarters: Vec::new(),
             targets: targets.try_into().unwrap_or_else(|_| unreachable!("as many rows as places")),
         }
     }
@@ -48,10 +54,12 @@ impl LaneBuffers {
         if self.keys.len() < n {
             self.projections.resize(n, [0.0; LANES]);
             self.keys.resize(n, [0; LANES]);
-            self.means.resize(n, [0.0; LANES]);
+            self.means.resize(n / 2, [0.0; LANES]);
+            self.root_means.extend((self.root_means.len()..n / 2).map(law::root_mean));
         }
         if self.coordinates.len() < n * dims {
             self.coordinates.resize(n * dims, 0.0);
+            self.quarters.resize(n * dims, [0.0; LANES / 4]);
         }
     }
 }
@@ -75,6 +83,15 @@ impl Gather<'_> {
     #[inline(always)]
     fn gather(&self, coordinates: &mut [f32]) {
         let dims = self.dims.len();
+        if let ([x, y], [None, None]) = (self.dims, self.cut) {
+            // The common case by itself, without a choice per coordinate.
+            let (points, _) = coordinates.as_chunks_mut::<2>();
+            for (point, &sample) in points.iter_mut().zip(self.samples) {
+                let values = &self.points[sample as usize * self.stride..][..self.stride];
+                *point = [values[*x] - 0.5, values[*y] - 0.5];
+            }
+            return;
+        }
         for (j, point) in coordinates.chunks_exact_mut(dims).enumerate() {
             for (dim, value) in point.iter_mut().enumerate() {
                 *value = self.coordinate(j, dim) - 0.5;
@@ -112,43 +129,24 @@ pub(crate) fn transport<S: Simd>(
     buffers: &mut LaneBuffers,
     moves: &mut [f32],
 ) -> f32 {
-    // A number of dimensions that the compiler knows makes for loops without a counter.
-    match theta {
-        &[x] => in_dims(simd, subset, &[x], law, network, buffers, moves),
-        &[x, y] => in_dims(simd, subset, &[x, y], law, network, buffers, moves),
-        &[x, y, z] => in_dims(simd, subset, &[x, y, z], law, network, buffers, moves),
-        &[x, y, z, w] => in_dims(simd, subset, &[x, y, z, w], law, network, buffers, moves),
-        theta => in_dims(simd, subset, theta, law, network, buffers, moves),
-    }
-}
-
-#[inline(always)]
-fn in_dims<S: Simd>(
-    simd: S,
-    subset: &Gather,
-    theta: &[Row],
-    law: &LaneLaw,
-    network: &Network,
-    buffers: &mut LaneBuffers,
-    moves: &mut [f32],
-) -> f32 {
     let n = subset.samples.len();
     buffers.grow(n, theta.len());
-    let LaneBuffers { coordinates, projections, keys, means, targets } = buffers;
+    let LaneBuffers { coordinates, projections, keys, means, root_means, quarters, targets } = buffers;
     let (coordinates, projections) = (&mut coordinates[..n * theta.len()], &mut projections[..n]);
     subset.gather(coordinates);
+    project(coordinates, theta, projections);
     if n == 1 {
-        project(coordinates, theta, projections);
         targets[0] = [0.0; LANES];
     } else {
         let (keys, means) = (&mut keys[..n], &mut means[..n / 2]);
-        project(coordinates, theta, projections);
-        encode(projections, law.extent(), keys);
+        encode(simd, projections, law.extent(), keys);
         network.sort(simd, keys);
-        law.lower_cell_means(n, means);
+        law.lower_cell_means(simd, n, root_means, means);
         match_targets(keys, means, targets);
     }
-    let mut squares = displace(projections, &targets[..n], theta, moves);
+    let quarters = &mut quarters[..n * theta.len()];
+    let mut squares = displace(projections, &targets[..n], theta, quarters);
+    add_up(quarters, moves);
     for (square, &extent) in squares.iter_mut().zip(law.extent()) {
         // An unused lane may have targets, but moves nothing.
         *square = if extent > 0.0 { *square } else { 0.0 };
@@ -158,27 +156,51 @@ fn in_dims<S: Simd>(
 
 #[inline(always)]
 fn project(coordinates: &[f32], theta: &[Row], projections: &mut [Row]) {
-    for (point, projection) in coordinates.chunks_exact(theta.len()).zip(projections) {
-        let mut sum = [0.0; LANES];
-        for (value, theta) in point.iter().zip(theta) {
-            for lane in 0..LANES {
-                sum[lane] += value * theta[lane];
+    // A number of dimensions that the compiler knows makes for a loop without inner counters.
+    match theta.len() {
+        1 => project_in::<1>(coordinates, theta, projections),
+        2 => project_in::<2>(coordinates, theta, projections),
+        3 => project_in::<3>(coordinates, theta, projections),
+        4 => project_in::<4>(coordinates, theta, projections),
+        dims => {
+            for (point, projection) in coordinates.chunks_exact(dims).zip(projections) {
+                *projection = projected(point, theta);
             }
         }
-        *projection = sum;
     }
+}
+
+#[inline(always)]
+fn project_in<const DIMS: usize>(coordinates: &[f32], theta: &[Row], projections: &mut [Row]) {
+    let (points, _) = coordinates.as_chunks::<DIMS>();
+    let theta = theta.first_chunk::<DIMS>();
+    for (point, projection) in points.iter().zip(projections) {
+        *projection = theta.map_or([0.0; LANES], |theta| projected(point, theta));
+    }
+}
+
+#[inline(always)]
+fn projected(point: &[f32], theta: &[Row]) -> Row {
+    let mut sum = [0.0; LANES];
+    for (value, theta) in point.iter().zip(theta) {
+        for lane in 0..LANES {
+            sum[lane] += value * theta[lane];
+        }
+    }
+    sum
 }
 
 /// Keys that sort as the projections do. A projection scaled to (1, 2) has its value in the 23 bits of the
 /// mantissa, which move up to make room for the position.
 #[inline(always)]
-fn encode(projections: &[Row], extent: &Row, keys: &mut [[u32; LANES]]) {
+fn encode<S: Simd>(simd: S, projections: &[Row], extent: &Row, keys: &mut [[u32; LANES]]) {
     /// Room for the rounding of projections at the ends of the support, in up to a thousand dimensions.
     const INSIDE: f32 = 1.0 - 1.0 / 4096.0;
     let mut scale = [0.0; LANES];
-    for lane in 0..LANES {
+    let (inside, least) = (simd.splat_f32s(INSIDE), simd.splat_f32s(f32::MIN_POSITIVE));
+    for (scale, extent) in S::as_mut_simd_f32s(&mut scale).0.iter_mut().zip(S::as_simd_f32s(extent).0) {
         // An unused lane has extent 0; its keys need only be defined.
-        scale[lane] = INSIDE / (extent[lane] + f32::MIN_POSITIVE);
+        *scale = simd.div_f32s(inside, simd.max_f32s(*extent, least));
     }
     for (place, (projection, key)) in projections.iter().zip(keys).enumerate() {
         for lane in 0..LANES {
@@ -205,26 +227,63 @@ fn match_targets(keys: &[[u32; LANES]], means: &[Row], targets: &mut [Row; LONGE
     }
 }
 
+/// Writes the first steps of the sum over lanes of `displacement * theta`, per sample and dimension. Returns the sums
+/// of squared displacements.
 #[inline(always)]
-fn displace(projections: &[Row], targets: &[Row], theta: &[Row], moves: &mut [f32]) -> Row {
-    let mut squares = [0.0; LANES];
-    for ((projection, target), moves) in
-        projections.iter().zip(targets).zip(moves.chunks_exact_mut(theta.len()))
-    {
-        let mut displacement = [0.0; LANES];
-        for lane in 0..LANES {
-            displacement[lane] = target[lane] - projection[lane];
-            squares[lane] += displacement[lane] * displacement[lane];
-        }
-        for (moved, theta) in moves.iter_mut().zip(theta) {
-            let mut along = [0.0; LANES];
-            for lane in 0..LANES {
-                along[lane] = displacement[lane] * theta[lane];
-            }
-            *moved = sum(along);
+fn displace(projections: &[Row], targets: &[Row], theta: &[Row], quarters: &mut [[f32; LANES / 4]]) -> Row {
+    match theta.len() {
+        1 => displace_in::<1>(projections, targets, theta, quarters),
+        2 => displace_in::<2>(projections, targets, theta, quarters),
+        3 => displace_in::<3>(projections, targets, theta, quarters),
+        4 => displace_in::<4>(projections, targets, theta, quarters),
+        dims => {
+            let mut squares = [0.0; LANES];
+            let samples = projections.iter().zip(targets).zip(quarters.chunks_exact_mut(dims));
+            samples.for_each(|((from, to), halves)| displaced(from, to, theta, halves, &mut squares));
+            squares
         }
     }
+}
+
+#[inline(always)]
+fn displace_in<const DIMS: usize>(
+    projections: &[Row],
+    targets: &[Row],
+    theta: &[Row],
+    quarters: &mut [[f32; LANES / 4]],
+) -> Row {
+    let mut squares = [0.0; LANES];
+    let (quarters, _) = quarters.as_chunks_mut::<DIMS>();
+    let Some(theta) = theta.first_chunk::<DIMS>() else { return squares };
+    let samples = projections.iter().zip(targets).zip(quarters);
+    samples.for_each(|((from, to), quarters)| displaced(from, to, theta, quarters, &mut squares));
     squares
+}
+
+#[inline(always)]
+fn displaced(from: &Row, to: &Row, theta: &[Row], quarters: &mut [[f32; LANES / 4]], squares: &mut Row) {
+    let mut displacement = [0.0; LANES];
+    for lane in 0..LANES {
+        displacement[lane] = to[lane] - from[lane];
+        squares[lane] += displacement[lane] * displacement[lane];
+    }
+    for (quarter, theta) in quarters.iter_mut().zip(theta) {
+        let mut eight = [0.0; 8];
+        for lane in 0..8 {
+            eight[lane] = displacement[lane] * theta[lane] + displacement[lane + 8] * theta[lane + 8];
+        }
+        for lane in 0..4 {
+            quarter[lane] = eight[lane] + eight[lane + 4];
+        }
+    }
+}
+
+/// Adds up the four numbers of each row. In a loop of its own, so that several rows are added at once.
+#[inline(always)]
+fn add_up(quarters: &[[f32; LANES / 4]], sums: &mut [f32]) {
+    for ([a, b, c, d], sum) in quarters.iter().zip(sums) {
+        *sum = (a + c) + (b + d);
+    }
 }
 
 /// Sum over lanes in a fixed order, the same on every processor.

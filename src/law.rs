@@ -4,6 +4,8 @@
 //! has a closed form; in more, [`crate::bank::Bank`] holds tabulated laws of a fixed set of directions, and sign changes and
 //! permutations of the axes (which leave a law unchanged up to a shift) make many directions out of each.
 
+use pulp::Simd;
+
 use crate::bank::{Block, Boundary};
 use crate::direction::Directions;
 use crate::row::{LANES, Row};
@@ -28,18 +30,19 @@ impl LaneLaw<'_> {
     }
 
     /// Writes the means of the quantile function over the lower `n / 2` of `n` equal cells. Those of the upper half are
-    /// their negatives, and that of a cell in the middle is 0.
+    /// their negatives, and that of a cell in the middle is 0. `root_means` are those of [`root_mean`].
     #[inline(always)]
-    pub(crate) fn lower_cell_means(&self, n: usize, cells: &mut [Row]) {
+    pub(crate) fn lower_cell_means<S: Simd>(&self, simd: S, n: usize, root_means: &[f32], cells: &mut [Row]) {
         match self {
-            LaneLaw::Trapezoid(law) if law.paired => law.lower_cell_means::<{ LANES / 2 }>(n, cells),
-            LaneLaw::Trapezoid(law) => law.lower_cell_means::<LANES>(n, cells),
+            LaneLaw::Trapezoid(law) => law.lower_cell_means(simd, n, root_means, cells),
             LaneLaw::Tabulated(law) => law.lower_cell_means(n, cells),
         }
     }
 }
 
 /// Law of `a U + b V` for independent `U`, `V`, uniform on `[-1/2, 1/2]`, and `a ≥ b ≥ 0`.
+///
+/// Written with explicit vectors: left to itself, the compiler takes these few rows apart into scalars.
 pub(crate) struct Trapezoid {
     extent: Row,
     longer: Row,
@@ -50,67 +53,107 @@ pub(crate) struct Trapezoid {
 impl Trapezoid {
     /// The laws of directions in at most two dimensions.
     #[inline(always)]
-    pub(crate) fn new(directions: &Directions) -> Self {
+    pub(crate) fn new<S: Simd>(simd: S, directions: &Directions) -> Self {
         let [mut extent, mut longer, mut shorter] = [[0.0_f32; LANES]; 3];
-        for row in &directions.theta {
-            for lane in 0..LANES {
-                let length = row[lane].abs();
-                extent[lane] += length;
-                shorter[lane] = greater(shorter[lane], lesser(length, longer[lane]));
-                longer[lane] = greater(longer[lane], length);
+        for theta in &directions.theta {
+            let (theta, _) = S::as_simd_f32s(theta);
+            let (extent, _) = S::as_mut_simd_f32s(&mut extent);
+            let (longer, _) = S::as_mut_simd_f32s(&mut longer);
+            let (shorter, _) = S::as_mut_simd_f32s(&mut shorter);
+            for (((theta, extent), longer), shorter) in theta.iter().zip(extent).zip(longer).zip(shorter) {
+                let length = simd.abs_f32s(*theta);
+                *extent = simd.add_f32s(*extent, length);
+                *shorter = simd.max_f32s(*shorter, simd.min_f32s(length, *longer));
+                *longer = simd.max_f32s(*longer, length);
             }
         }
         Self { extent, longer, shorter, paired: directions.paired }
     }
 
-    /// Cell means of the first `WIDTH` lanes, repeated in the others.
+    /// `root_means` holds the means of the square root over `[0, 1]`, `[1, 2]`, ….
     #[inline(always)]
-    fn lower_cell_means<const WIDTH: usize>(&self, n: usize, means: &mut [Row]) {
-        let cells = n as f32;
-        // In units of cells, from the lower end of the support: the rising edge of the trapezoid ends at `edge`, inside
-        // cell `split`, whose mean is `split_mean`. Before it the quantile is sqrt(2 a b u), after it a u + b / 2.
-        let [mut split, mut split_mean, mut tail, mut slope, mut offset, mut half] = [[0.0_f32; WIDTH]; 6];
-        for lane in 0..WIDTH {
-            let (a, b) = (greater(self.longer[lane], f32::MIN_POSITIVE), self.shorter[lane]);
-            let edge = cells * (b / a) * 0.5;
-            tail[lane] = (2.0 * a * b / cells).sqrt();
-            slope[lane] = a / cells;
-            // From the middle of the support, and to the middle of a cell.
-            half[lane] = 0.5 * self.extent[lane];
-            offset[lane] = b * 0.5 - half[lane] + 0.5 * slope[lane];
-            split[lane] = edge.floor();
-            let share = edge - split[lane];
-            // Mean of sqrt over [split, edge] without cancellation.
-            let (root_low, root_high) = (split[lane].sqrt(), edge.sqrt());
-            let rising = tail[lane] * (2.0 / 3.0) * (edge + root_low * root_high + split[lane])
-                / greater(root_low + root_high, f32::MIN_POSITIVE);
-            let linear = slope[lane] * (edge + split[lane]) * 0.5 + offset[lane];
-            split_mean[lane] = share * (rising - half[lane]) + (1.0 - share) * linear;
-        }
-        for (rank, mean) in means[..n / 2].iter_mut().enumerate() {
-            let (cell, root_mean) = (rank as f32, root_mean(rank));
-            for lane in 0..WIDTH {
-                let rising = tail[lane] * root_mean - half[lane];
-                let linear = slope[lane] * cell + offset[lane];
-                let after = if cell > split[lane] { linear } else { split_mean[lane] };
-                let value = if cell < split[lane] { rising } else { after };
-                mean[lane] = value;
-                mean[lane + LANES - WIDTH] = value;
+    fn lower_cell_means<S: Simd>(&self, simd: S, n: usize, root_means: &[f32], means: &mut [Row]) {
+        let (longer, _) = S::as_simd_f32s(&self.longer);
+        let (shorter, _) = S::as_simd_f32s(&self.shorter);
+        let (extent, _) = S::as_simd_f32s(&self.extent);
+        let (means, _) = S::as_mut_simd_f32s(means.as_flattened_mut());
+        let columns = longer.len();
+        // The upper half of the lanes repeats the lower one, where vectors are short enough to tell.
+        let repeats = self.paired && columns > 1;
+        let distinct = if repeats { columns / 2 } else { columns };
+        for column in 0..distinct {
+            let cells = Cells::new(simd, n as f32, longer[column], shorter[column], extent[column]);
+            for (rank, (row, root_mean)) in means.chunks_exact_mut(columns).zip(root_means).enumerate() {
+                let mean = cells.mean(simd, rank as f32, *root_mean);
+                row[column] = mean;
+                if repeats {
+                    row[column + distinct] = mean;
+                }
             }
         }
     }
 }
 
-/// The greater of two numbers, in one instruction: `f32::max` would take care of NaN as well.
-#[inline(always)]
-fn greater(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
+/// Quantile cells of one vector of trapezoids, counted from the lower end of the support.
+///
+/// In units of cells the rising edge of the trapezoid ends inside cell `split`, whose mean is `split_mean`. Before it
+/// the quantile is `sqrt(2 a b u)`, after it `a u + b / 2`, less half the extent.
+struct Cells<S: Simd> {
+    split: S::f32s,
+    split_mean: S::f32s,
+    tail: S::f32s,
+    slope: S::f32s,
+    offset: S::f32s,
+    half: S::f32s,
 }
 
-/// The lesser of two numbers.
+impl<S: Simd> Cells<S> {
+    #[inline(always)]
+    fn new(simd: S, cells: f32, longer: S::f32s, shorter: S::f32s, extent: S::f32s) -> Self {
+        let number = |value: f32| simd.splat_f32s(value);
+        let times = |a, b| simd.mul_f32s(a, b);
+        let plus = |a, b| simd.add_f32s(a, b);
+        let least = number(f32::MIN_POSITIVE);
+        let (a, b) = (simd.max_f32s(longer, least), shorter);
+        let share_of_cell = number(1.0 / cells);
+        let edge = times(simd.div_f32s(b, a), number(0.5 * cells));
+        let tail = simd.sqrt_f32s(times(times(a, b), times(number(2.0), share_of_cell)));
+        let slope = times(a, share_of_cell);
+        let half = times(extent, number(0.5));
+        let half_cell = times(slope, number(0.5));
+        let offset = plus(simd.sub_f32s(times(b, number(0.5)), half), half_cell);
+        let split = floor(simd, edge);
+        let share = simd.sub_f32s(edge, split);
+        // Mean of sqrt over [split, edge] without cancellation.
+        let (root_low, root_high) = (simd.sqrt_f32s(split), simd.sqrt_f32s(edge));
+        let sum = plus(plus(edge, times(root_low, root_high)), split);
+        let mean_root =
+            simd.div_f32s(times(sum, number(2.0 / 3.0)), simd.max_f32s(plus(root_low, root_high), least));
+        let rising = simd.sub_f32s(times(tail, mean_root), half);
+        let linear = plus(times(half_cell, plus(edge, split)), offset);
+        let rest = simd.sub_f32s(number(1.0), share);
+        let split_mean = plus(times(share, rising), times(rest, linear));
+        Self { split, split_mean, tail, slope, offset, half }
+    }
+
+    /// Mean over cell `rank`, which is the lower half of the cells at most.
+    #[inline(always)]
+    fn mean(&self, simd: S, rank: f32, root_mean: f32) -> S::f32s {
+        let cell = simd.splat_f32s(rank);
+        let rising = simd.sub_f32s(simd.mul_f32s(self.tail, simd.splat_f32s(root_mean)), self.half);
+        let linear = simd.add_f32s(simd.mul_f32s(self.slope, cell), self.offset);
+        let after = simd.select_f32s(simd.less_than_f32s(self.split, cell), linear, self.split_mean);
+        simd.select_f32s(simd.less_than_f32s(cell, self.split), rising, after)
+    }
+}
+
+/// The integer part of numbers from 0 to 2^22.
 #[inline(always)]
-fn lesser(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
+fn floor<S: Simd>(simd: S, values: S::f32s) -> S::f32s {
+    let shift = simd.splat_f32s(8_388_608.0);
+    let rounded = simd.sub_f32s(simd.add_f32s(values, shift), shift);
+    let lower = simd.sub_f32s(rounded, simd.splat_f32s(1.0));
+    simd.select_f32s(simd.less_than_f32s(values, rounded), lower, rounded)
 }
 
 /// Laws of one block of a bank, with some lanes replaced by coordinate axes.
@@ -152,8 +195,7 @@ impl<'a> Tabulated<'a> {
 }
 
 /// Mean of the square root over `[rank, rank + 1]`.
-#[inline(always)]
-fn root_mean(rank: usize) -> f32 {
+pub(crate) fn root_mean(rank: usize) -> f32 {
     // Rounded from (2/3) ((r+1)^1.5 - r^1.5), rewritten without cancellation.
     let low = rank as f32;
     let high = low + 1.0;

@@ -4,80 +4,109 @@ use rayon::prelude::*;
 
 use crate::bank::{Block, Boundary};
 use crate::lanes::Gather;
-use crate::target::Projected;
 
 /// Above this many samples a sort is worth sharing between threads.
 pub(crate) const SHARED: usize = 1 << 15;
+
+/// From this many samples on, a radix sort beats the comparisons of the standard library.
+const RADIX: usize = 256;
+/// Bits of a digit of the radix sort, which takes two.
+const DIGIT: u32 = 11;
 
 /// Buffers of one worker; they grow to the largest subset seen and stay.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LongBuffers {
     projections: Vec<f32>,
+    /// Value and position in one number.
     keys: Vec<u64>,
+    /// Digits and positions on their way through the radix sort.
+    entries: Vec<u32>,
+    /// Positions by increasing projection.
+    order: Vec<u32>,
+    starts: Vec<[u32; 1 << DIGIT]>,
     means: Vec<f64>,
 }
 
 /// Law of the projection on one direction.
-pub(crate) enum LongLaw<'a> {
-    /// In closed form.
-    Closed(Projected),
-    /// From a bank, shifted by the sum of the direction's negative components.
+pub(crate) struct LongLaw<'a> {
+    /// Lowest projection.
+    pub lowest: f64,
+    /// Length of the support.
+    pub extent: f64,
+    /// What lies between.
+    pub shape: LongShape<'a>,
+}
+
+/// Density of a projection, from the lower end of its support.
+pub(crate) enum LongShape<'a> {
+    /// That of `a U + b V` for independent uniform `U`, `V`, with `a ≥ b ≥ 0`.
+    Trapezoid {
+        /// `a`.
+        longer: f64,
+        /// `b`.
+        shorter: f64,
+    },
+    /// From a bank.
     Tabulated {
         /// Where the direction comes from.
         block: &'a Block,
         /// Which of its directions.
         lane: usize,
-        /// Lowest projection.
-        lowest: f64,
-        /// Length of the support.
-        extent: f64,
     },
 }
 
-impl LongLaw<'_> {
-    fn cell_means(&self, means: &mut [f64]) {
+impl LongShape<'_> {
+    /// Integral of the quantile function from 0 to `u`, at most 1/2.
+    fn integral(&self, u: f64) -> f64 {
         match *self {
-            LongLaw::Closed(ref law) => law.cell_means_into(means),
-            LongLaw::Tabulated { block, lane, lowest, extent } => {
-                let n = means.len();
-                let cells = n as f64;
-                let mut below = 0.0;
-                for cell in 0..n / 2 {
-                    let boundary = Boundary::new((cell + 1) as f64 / cells);
-                    let integral = block.integral_of_lane(&boundary, lane);
-                    let above = (integral - below) * cells;
-                    means[cell] = lowest + above;
-                    means[n - 1 - cell] = lowest + (extent - above);
-                    below = integral;
-                }
-                if n % 2 == 1 {
-                    means[n / 2] = lowest + 0.5 * extent;
-                }
+            LongShape::Trapezoid { longer, shorter } => {
+                let edge = 0.5 * shorter / longer.max(f64::MIN_POSITIVE);
+                let rising = u.min(edge);
+                let beyond = u - rising;
+                (2.0 / 3.0) * (2.0 * longer * shorter * rising).sqrt() * rising
+                    + beyond * (longer * 0.5 * (u + rising) + 0.5 * shorter)
             }
+            LongShape::Tabulated { block, lane } => block.integral_of_lane(&Boundary::new(u), lane),
+        }
+    }
+}
+
+impl LongLaw<'_> {
+    /// Writes the means of the quantile function over equal cells.
+    fn cell_means(&self, means: &mut [f64]) {
+        let &LongLaw { lowest, extent, ref shape } = self;
+        let n = means.len();
+        let cells = n as f64;
+        let mut below = 0.0;
+        for cell in 0..n / 2 {
+            let integral = shape.integral((cell + 1) as f64 / cells);
+            let above = (integral - below) * cells;
+            means[cell] = lowest + above;
+            means[n - 1 - cell] = lowest + (extent - above);
+            below = integral;
+        }
+        if n % 2 == 1 {
+            means[n / 2] = lowest + 0.5 * extent;
         }
     }
 
     fn cell_mean(&self, lower: f64, upper: f64) -> f64 {
-        match *self {
-            LongLaw::Closed(ref law) => law.cell_mean(lower, upper),
-            LongLaw::Tabulated { block, lane, lowest, extent } => {
-                // A weight may be too small beside the sum of all to give its cell a width, or its mean any digits.
-                const NARROWEST: f64 = 1e-8;
-                let spare = 0.5 * (NARROWEST - (upper - lower)).max(0.0);
-                let (lower, upper) = ((lower - spare).max(0.0), (upper + spare).min(1.0));
-                let lower_half = |u: f64| block.integral_of_lane(&Boundary::new(u), lane);
-                // The quantile at 1 - u is the extent less that at u.
-                let integral = |u: f64| {
-                    if u <= 0.5 { lower_half(u) } else { extent * (u - 0.5) + lower_half(1.0 - u) }
-                };
-                lowest + (integral(upper) - integral(lower)) / (upper - lower)
-            }
-        }
+        // A weight may be too small beside the sum of all to give its cell a width, or its mean any digits.
+        const NARROWEST: f64 = 1e-8;
+        let &LongLaw { lowest, extent, ref shape } = self;
+        let spare = 0.5 * (NARROWEST - (upper - lower)).max(0.0);
+        let (lower, upper) = ((lower - spare).max(0.0), (upper + spare).min(1.0));
+        // The quantile at 1 - u is the extent less that at u.
+        let integral = |u: f64| {
+            if u <= 0.5 { shape.integral(u) } else { extent * (u - 0.5) + shape.integral(1.0 - u) }
+        };
+        lowest + (integral(upper) - integral(lower)) / (upper - lower)
     }
 }
 
 /// Transports a subset along one direction and adds, per sample and dimension of the group, `mass * displacement *
 /// theta` to `moves`. Masses are `weights`, or 1. Returns the sum of `mass * displacement²`.
+#[inline(always)]
 pub(crate) fn transport(
     subset: &Gather,
     theta: impl Fn(usize) -> f32 + Sync,
@@ -88,29 +117,30 @@ pub(crate) fn transport(
 ) -> f64 {
     let (n, dims) = (subset.samples.len(), subset.dims.len());
     let project = |j: usize| (0..dims).map(|dim| subset.coordinate(j, dim) * theta(dim)).sum::<f32>();
-    buffers.projections.resize(n, 0.0);
-    buffers.keys.resize(n, 0);
-    let (projections, keys) = (&mut buffers.projections[..n], &mut buffers.keys[..n]);
-    let key = |(j, (projection, key)): (usize, (&mut f32, &mut u64))| {
-        *projection = project(j);
-        *key = u64::from(ordered_bits(*projection)) << 32 | j as u64;
-    };
-    if n >= SHARED {
-        projections.par_iter_mut().zip(keys.par_iter_mut()).enumerate().with_min_len(1 << 12).for_each(key);
-        keys.par_sort_unstable();
-    } else {
-        projections.iter_mut().zip(keys.iter_mut()).enumerate().for_each(key);
-        keys.sort_unstable();
+    let LongBuffers { projections, keys, entries, order, starts, means } = buffers;
+    for (buffer, least) in [(&mut *entries, RADIX), (order, 0)] {
+        buffer.resize(if n >= least { n } else { 0 }.max(buffer.len()), 0);
     }
-    buffers.means.resize(n, 0.0);
-    let means = &mut buffers.means[..n];
+    projections.resize(n.max(projections.len()), 0.0);
+    means.resize(n.max(means.len()), 0.0);
+    let (projections, order, means) = (&mut projections[..n], &mut order[..n], &mut means[..n]);
+    if n >= SHARED {
+        projections.par_iter_mut().enumerate().with_min_len(1 << 12).for_each(|(j, to)| *to = project(j));
+    } else {
+        projections.iter_mut().enumerate().for_each(|(j, to)| *to = project(j));
+    }
+    match n {
+        0..RADIX => sort_few(projections, keys, order),
+        RADIX..SHARED => sort_digits(projections, law, (entries, starts), order),
+        _ => sort_shared(projections, keys, order),
+    }
     match weights {
         None => law.cell_means(means),
         Some(weights) => {
             let total: f64 = weights.iter().sum();
             let (mut below, mut lower) = (0.0, 0.0);
-            for (mean, &key) in means.iter_mut().zip(&*keys) {
-                below += weights[key as u32 as usize];
+            for (mean, &position) in means.iter_mut().zip(&*order) {
+                below += weights[position as usize];
                 let upper = (below / total).min(1.0);
                 *mean = law.cell_mean(lower, upper);
                 lower = upper;
@@ -118,8 +148,8 @@ pub(crate) fn transport(
         }
     }
     let mut squares = 0.0;
-    for (&mean, &key) in means.iter().zip(&*keys) {
-        let position = key as u32 as usize;
+    for (&mean, &position) in means.iter().zip(&*order) {
+        let position = position as usize;
         let mass = weights.map_or(1.0, |weights| weights[position]);
         let displacement = mean - f64::from(projections[position]);
         squares += mass * displacement * displacement;
@@ -129,6 +159,66 @@ pub(crate) fn transport(
         }
     }
     squares
+}
+
+/// The projection in the high bits and its position in the low ones.
+fn key((position, projection): (usize, &f32)) -> u64 {
+    u64::from(ordered_bits(*projection)) << 32 | position as u64
+}
+
+fn sort_few(projections: &[f32], keys: &mut Vec<u64>, order: &mut [u32]) {
+    keys.clear();
+    keys.extend(projections.iter().enumerate().map(key));
+    keys.sort_unstable();
+    order.iter_mut().zip(keys).for_each(|(order, key)| *order = *key as u32);
+}
+
+fn sort_shared(projections: &[f32], keys: &mut Vec<u64>, order: &mut [u32]) {
+    keys.resize(projections.len(), 0);
+    let pairs = keys.par_iter_mut().zip(projections.par_iter().enumerate()).with_min_len(1 << 12);
+    pairs.for_each(|(to, from)| *to = key(from));
+    keys.par_sort_unstable();
+    order.par_iter_mut().zip(keys).with_min_len(1 << 12).for_each(|(order, key)| *order = *key as u32);
+}
+
+/// Sorts by two digits of the projection's place in the support: to a 4-millionth of it, and by position below.
+fn sort_digits(
+    projections: &[f32],
+    law: &LongLaw,
+    (entries, starts): (&mut [u32], &mut Vec<[u32; 1 << DIGIT]>),
+    order: &mut [u32],
+) {
+    const DIGITS: u32 = 2 * DIGIT;
+    const LOW: u32 = (1 << DIGIT) - 1;
+    const { assert!(SHARED <= 1 << (32 - DIGIT)) };
+    let scale = (f64::from(1_u32 << DIGITS) / law.extent) as f32;
+    let shift = (-law.lowest * f64::from(scale)) as f32;
+    // A float becomes 0 rather than negative; rounding may exceed the last place.
+    let place = |projection: f32| ((projection * scale + shift) as u32).min((1 << DIGITS) - 1);
+    starts.clear();
+    starts.resize(2, [0; 1 << DIGIT]);
+    let [low, high] = starts.as_mut_slice() else { return };
+    for (order, &projection) in order.iter_mut().zip(projections) {
+        *order = place(projection);
+    }
+    for &place in &*order {
+        low[(place & LOW) as usize] += 1;
+        high[(place >> DIGIT & LOW) as usize] += 1;
+    }
+    for counts in [&mut *low, &mut *high] {
+        let mut sum = 0;
+        counts.iter_mut().for_each(|count| sum += std::mem::replace(count, sum));
+    }
+    for (position, &place) in order.iter().enumerate() {
+        let start = &mut low[(place & LOW) as usize];
+        entries[*start as usize] = (place & !LOW) << (32 - DIGITS) | position as u32;
+        *start += 1;
+    }
+    for &entry in entries.iter().take(order.len()) {
+        let start = &mut high[(entry >> (32 - DIGIT)) as usize];
+        order[*start as usize] = entry & (u32::MAX >> DIGIT);
+        *start += 1;
+    }
 }
 
 /// Bits that sort as the numbers do.

@@ -172,6 +172,11 @@ impl Optimizer {
     ///
     /// For schedules of your own; [`Optimizer::run`] follows those of the configuration.
     pub fn step(&mut self, rate: f64, balance: f64) -> (f64, u64) {
+        // On a thread of the pool from here on, instead of going there and back for each of the loops.
+        rayon::scope(|_| self.step_in_pool(rate, balance))
+    }
+
+    fn step_in_pool(&mut self, rate: f64, balance: f64) -> (f64, u64) {
         let Self { engine, objective, config, steps, points, pull, walker, .. } = self;
         let Config { domains, seed, .. } = config;
         engine.pull(objective, (*seed, *steps, Pick::Batch(Role::Descend)), points, pull);
@@ -203,6 +208,10 @@ impl Optimizer {
 
     /// One step of a sweep. Returns the mean square pull.
     fn sweep_step(&mut self, step: usize, rate: f64, balance: f64) -> Result<f64, ConfigError> {
+        rayon::scope(|_| self.sweep_step_in_pool(step, rate, balance))
+    }
+
+    fn sweep_step_in_pool(&mut self, step: usize, rate: f64, balance: f64) -> Result<f64, ConfigError> {
         let Self { engine, objective, config, points, pull, sweeper, swept, .. } = self;
         let Config { domains, seed, sweeps, .. } = config;
         let sweeper = match sweeper {
