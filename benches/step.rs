@@ -2,6 +2,9 @@
 //!
 //! `cargo bench --bench step`; the throughput is in selected samples, the sum of subset sizes over all slices.
 
+#[path = "common/selected.rs"]
+mod selected;
+
 use std::ops::ControlFlow;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
@@ -25,17 +28,7 @@ fn step(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("step");
     for (name, config) in cases() {
         let mut optimizer = Optimizer::new(config).expect("the cases are valid");
-        // The mean subset: the sum of the taps' weights, times the samples per pixel.
-        let selected: f64 = optimizer
-            .objective()
-            .taps(0)
-            .expect("the first term has a kernel")
-            .iter()
-            .map(|tap| tap.weight)
-            .sum();
-        let (_, slices) = optimizer.step(1.0, 1.0);
-        let samples = slices as f64 * selected * optimizer.config().extent.spp as f64;
-        group.throughput(Throughput::Elements(samples as u64));
+        group.throughput(Throughput::Elements(selected::per_step(optimizer.objective()) as u64));
         group.bench_function(BenchmarkId::from_parameter(name), |bencher| {
             bencher.iter(|| optimizer.step(0.1, 0.1));
         });
@@ -57,15 +50,7 @@ fn sigma(criterion: &mut Criterion) {
             }
         }
         let mut optimizer = Optimizer::new(config).expect("the cases are valid");
-        let selected: f64 = optimizer
-            .objective()
-            .taps(0)
-            .expect("the first term has a kernel")
-            .iter()
-            .map(|tap| tap.weight)
-            .sum();
-        let (_, slices) = optimizer.step(1.0, 1.0);
-        group.throughput(Throughput::Elements((slices as f64 * selected) as u64));
+        group.throughput(Throughput::Elements(selected::per_step(optimizer.objective()) as u64));
         group.bench_function(BenchmarkId::from_parameter(sigma_px), |bencher| {
             bencher.iter(|| optimizer.step(0.1, 0.1));
         });
