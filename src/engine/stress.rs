@@ -150,7 +150,7 @@ struct Compared {
 
 fn compare(objective: &Objective, seed: u64, step: u64, points: &[f32], slices: &[Slice]) -> Compared {
     let mut pull = Pull { sums: vec![0.0; points.len()], hits: vec![0.0; points.len()], ..Pull::default() };
-    Engine::new().pull(objective, (seed, step, Role::Descend), points, &mut pull);
+    Engine::new().pull(objective, (seed, step, crate::draw::Pick::Batch(Role::Descend)), points, &mut pull);
     assert_eq!(pull.slices, slices.len() as u64);
 
     let wide: Vec<f64> = points.iter().map(|&point| point.into()).collect();
