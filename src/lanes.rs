@@ -239,7 +239,9 @@ fn displace(projections: &[Row], targets: &[Row], theta: &[Row], quarters: &mut 
         dims => {
             let mut squares = [0.0; LANES];
             let samples = projections.iter().zip(targets).zip(quarters.chunks_exact_mut(dims));
-            samples.for_each(|((from, to), halves)| displaced(from, to, theta, halves, &mut squares));
+            for ((from, to), quarters) in samples {
+                displaced(from, to, theta, quarters, &mut squares);
+            }
             squares
         }
     }
@@ -256,7 +258,10 @@ fn displace_in<const DIMS: usize>(
     let (quarters, _) = quarters.as_chunks_mut::<DIMS>();
     let Some(theta) = theta.first_chunk::<DIMS>() else { return squares };
     let samples = projections.iter().zip(targets).zip(quarters);
-    samples.for_each(|((from, to), quarters)| displaced(from, to, theta, quarters, &mut squares));
+    // A loop and no `for_each`, which might be compiled apart, for another instruction set.
+    for ((from, to), quarters) in samples {
+        displaced(from, to, theta, quarters, &mut squares);
+    }
     squares
 }
 
