@@ -235,19 +235,23 @@ impl Chunk {
             let (these, rest) = moves.split_at((end - begin) * dims.len());
             let samples = &self.samples[begin..end];
             let weighted = term.family.is_weighted();
-            for (&sample, along) in samples.iter().zip(these.chunks_exact(dims.len())) {
-                let mass = if weighted { masses.next().copied().unwrap_or(0.0) } else { 1.0 };
-                // A sample before the first becomes a large number.
-                let first = (sample as usize).wrapping_sub(part.first).wrapping_mul(objective.dims);
-                let last = first.wrapping_add(objective.dims);
-                let (Some(sums), Some(hits)) =
-                    (part.sums.get_mut(first..last), part.hits.get_mut(first..last))
-                else {
-                    continue;
-                };
-                for (&dim, along) in dims.iter().zip(along) {
-                    sums[dim] += factor * along;
-                    hits[dim] += count * mass;
+            if let (&[x, y], false) = (dims.as_slice(), weighted) {
+                // The common case by itself, without a loop over two dimensions.
+                for (&sample, [along_x, along_y]) in samples.iter().zip(these.as_chunks::<2>().0) {
+                    let Some((sums, hits)) = part.sample(sample, objective.dims) else { continue };
+                    sums[x] += factor * along_x;
+                    sums[y] += factor * along_y;
+                    hits[x] += count;
+                    hits[y] += count;
+                }
+            } else {
+                for (&sample, along) in samples.iter().zip(these.chunks_exact(dims.len())) {
+                    let mass = if weighted { masses.next().copied().unwrap_or(0.0) } else { 1.0 };
+                    let Some((sums, hits)) = part.sample(sample, objective.dims) else { continue };
+                    for (&dim, along) in dims.iter().zip(along) {
+                        sums[dim] += factor * along;
+                        hits[dim] += count * mass;
+                    }
                 }
             }
             moves = rest;
@@ -262,6 +266,17 @@ struct Part<'a> {
     first: usize,
     sums: &'a mut [f32],
     hits: &'a mut [f32],
+}
+
+impl Part<'_> {
+    /// Sums and hits of a sample, if it is one of the part's.
+    #[inline(always)]
+    fn sample(&mut self, sample: u32, dims: usize) -> Option<(&mut [f32], &mut [f32])> {
+        // A sample before the first becomes a large number.
+        let first = (sample as usize).wrapping_sub(self.first).wrapping_mul(dims);
+        let last = first.wrapping_add(dims);
+        Some((self.sums.get_mut(first..last)?, self.hits.get_mut(first..last)?))
+    }
 }
 
 /// Samples whose moves are worth sharing between threads.
