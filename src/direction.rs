@@ -1,8 +1,10 @@
 //! Slicing directions of a dimension group, drawn for one subset at a time.
 
+use std::sync::Arc;
+
 use rand::{Rng, RngExt};
 
-use crate::bank::Bank;
+use crate::bank::{Bank, Banks};
 use crate::row::{LANES, Row};
 use crate::target::Target;
 
@@ -18,7 +20,7 @@ pub(crate) struct Slicer {
     dims: usize,
     per_subset: usize,
     axis_share: f64,
-    bank: Option<Bank>,
+    bank: Option<Arc<Bank>>,
     /// Cosine and sine of evenly spaced angles, turned as one for each subset. Where their number is even, the second
     /// half of them are the first turned by a right angle, and not listed.
     fan: Vec<[f64; 2]>,
@@ -43,9 +45,15 @@ pub(crate) struct Directions {
 impl Slicer {
     /// Draws `per_subset` directions (`1..=LANES`; one in one dimension), of which the share `axis_share` lies
     /// on coordinate axes.
-    pub(crate) fn new(dims: usize, per_subset: usize, axis_share: f64, target: &Target) -> Self {
+    pub(crate) fn new(
+        dims: usize,
+        per_subset: usize,
+        axis_share: f64,
+        target: &Target,
+        banks: &mut Banks,
+    ) -> Self {
         let per_subset = if dims == 1 { 1 } else { per_subset.min(LANES) };
-        let bank = (dims > 2).then(|| Bank::new(dims, target));
+        let bank = (dims > 2).then(|| banks.bank(dims, target));
         let mut slicer = Self { dims, per_subset, axis_share, bank, fan: Vec::new() };
         let spacing = slicer.spacing();
         let listed = if per_subset % 2 == 0 { per_subset / 2 } else { per_subset };
@@ -61,7 +69,7 @@ impl Slicer {
     }
 
     pub(crate) fn bank(&self) -> Option<&Bank> {
-        self.bank.as_ref()
+        self.bank.as_deref()
     }
 
     /// Whether [`Slicer::draw`] asks its generator for anything.

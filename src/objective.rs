@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use crate::bank::Banks;
 use crate::class::{Classes, Form, Wanted};
 use crate::cramer;
 use crate::demand::Demand;
@@ -123,9 +124,9 @@ impl Objective {
             return Err(ConfigError::NoTerms);
         }
         slicing.validate()?;
-        let mut planned = Vec::new();
+        let (mut planned, mut banks) = (Vec::new(), Banks::default());
         for (index, term) in terms.iter().enumerate() {
-            planned.push(PlannedTerm::new(index, term, extent, dims, slicing, wanted.clone())?);
+            planned.push(PlannedTerm::new(index, term, extent, dims, slicing, wanted.clone(), &mut banks)?);
         }
         let classes = classes(&planned, extent);
         let slices = slicing.batch_slices.unwrap_or_else(|| (classes * slicing.directions).div_ceil(16));

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::bank::Boundary;
+use crate::bank::{Banks, Boundary};
 use crate::class::{Family, Wanted};
 use crate::direction::Slicer;
 use crate::error::ConfigError;
@@ -35,6 +35,7 @@ impl PlannedTerm {
         dims: usize,
         slicing: &Slicing,
         wanted: Wanted,
+        banks: &mut Banks,
     ) -> Result<Self, ConfigError> {
         if !(term.weight > 0.0 && term.weight.is_finite()) {
             let expected = "above 0 and finite";
@@ -60,7 +61,7 @@ impl PlannedTerm {
         // A subset that is not sorted in lanes gains nothing from sharing its directions.
         let long = sizes[0] > LONGEST;
         let per_subset = if long { 1 } else { slicing.directions };
-        let slicer = Slicer::new(term.dims.len(), per_subset, slicing.axis_share, &term.target);
+        let slicer = Slicer::new(term.dims.len(), per_subset, slicing.axis_share, &term.target, banks);
         let in_lanes = !family.is_weighted() && slicer.per_subset() > 1;
         let sizes: BTreeSet<usize> = match sizes.last() {
             _ if !in_lanes => BTreeSet::new(),
