@@ -1,7 +1,7 @@
 //! Error against time: our optimisers and the published loop, in one run.
 //!
 //! ```text
-//! cargo bench --bench time_against_error                               # some 13 minutes
+//! cargo bench --bench time_against_error                               # some 15 minutes
 //! cargo bench --bench time_against_error -- animated --out docs        # one case, files not in target/
 //! cargo bench --bench time_against_error -- --published-seconds 1000
 //! ```
@@ -48,7 +48,7 @@ struct Arguments {
     /// Directory of the CSV file and the plot.
     #[arg(long, default_value = "target")]
     out: PathBuf,
-    /// Seconds that the published loop gets in each case.
+    /// Seconds that the published loop gets in each case; twice as many in the animated one.
     #[arg(long, default_value_t = 140.0)]
     published_seconds: f64,
     /// Let the published loop draw levels up to the greatest weight of an animated kernel, as it should.
