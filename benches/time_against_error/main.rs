@@ -33,7 +33,7 @@ use std::time::Instant;
 use cases::Case;
 use clap::Parser;
 use fsot::Config;
-use methods::{METHODS, Method};
+use methods::{Effort, METHODS, Method};
 use mode::Mode;
 use published::{Levels, Published};
 use quality::{Judge, Quality};
@@ -122,11 +122,11 @@ fn measure(case: Case) -> Result<Outcome, Failure> {
 fn measure_ours(case: &Case, judge: &Judge) -> Result<Vec<Curve>, Failure> {
     let config = Config::new(case.extent, 2);
     // Starts the threads.
-    (METHODS[0].run)(&config, case.least_effort)?;
+    (METHODS[0].run)(&config, Effort { slices: case.least_effort, sweeps: 1 })?;
     let mut curves: Vec<Curve> =
         METHODS.iter().map(|method| Curve { method: method.name, points: Vec::new() }).collect();
     for doubling in 0.. {
-        let effort = case.least_effort << doubling;
+        let effort = Effort { slices: case.least_effort << doubling, sweeps: 1 << doubling };
         let unfinished = |curve: &Curve| {
             curve.points.last().is_none_or(|point| 1.5 * point.seconds < case.longest_seconds)
         };
