@@ -368,13 +368,18 @@ const BALANCES: usize = 2;
 /// Slices per pixel and frame from which on it is worth beginning with them.
 const ENOUGH_SLICES: f64 = 64.0;
 
-/// Mean time of a call, over as many as make a reliable figure.
+/// Mean time of a call, over as many as make a reliable figure: the median of three windows, since other work may share
+/// the machine.
 fn mean_seconds(mut call: impl FnMut()) -> f64 {
-    const ENOUGH: Duration = Duration::from_millis(15);
-    let (begin, mut timed) = (Instant::now(), 0);
-    while begin.elapsed() < ENOUGH {
-        call();
-        timed += 1;
-    }
-    begin.elapsed().as_secs_f64() / f64::from(timed)
+    const WINDOW: Duration = Duration::from_millis(8);
+    let mut means = [0.0; 3].map(|_: f64| {
+        let (begin, mut timed) = (Instant::now(), 0);
+        while begin.elapsed() < WINDOW {
+            call();
+            timed += 1;
+        }
+        begin.elapsed().as_secs_f64() / f64::from(timed)
+    });
+    means.sort_unstable_by(f64::total_cmp);
+    means[1]
 }
