@@ -1,8 +1,8 @@
 //! One step's slices, in parallel, summed in a fixed order.
 //!
-//! The subsets of a step are cut into chunks of fixed size; workers transport them into buffers of their own, and
-//! the displacements are then added to the samples one chunk after the other. No result depends on how many
-//! threads there are. Buffers are reused from step to step.
+//! The subsets of a step are cut into chunks of fixed size; workers transport them into buffers of their own. Then each
+//! worker adds up the displacements of its part of the table, chunk after chunk in the order of the draws, so that no
+//! result depends on how many threads there are. Buffers are reused from step to step.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -54,7 +54,6 @@ struct Scratch {
 }
 
 /// What the subsets of a chunk pull, in the order of the draws.
-
 #[derive(Default)]
 struct Chunk {
     samples: Vec<u32>,
