@@ -98,6 +98,8 @@ impl Engine {
             let (draws, chunk) = (std::slice::from_ref(draw), &mut chunks[0]);
             arch.dispatch(Transport { objective, seed, step, points, draws, chunk, scratch: large });
             add_up(objective, std::slice::from_ref(chunk), draws, 1, pull);
+            // The list of all samples stays one.
+            std::mem::swap(&mut chunk.samples, &mut large.subset);
         }
         draws.retain(|draw| !is_large(draw));
         // Fewer large subsets at a time, so that memory is bounded by samples and not by slices times samples.
@@ -152,7 +154,11 @@ impl WithSimd for Transport<'_> {
             term.family.select(draw.member as usize, draw.level, &mut scratch.subset);
             term.family.weigh(draw.member as usize, &mut scratch.weights);
             chunk.transport(simd, objective, term, points, scratch);
-            chunk.samples.extend_from_slice(&scratch.subset);
+            if chunk.samples.is_empty() {
+                std::mem::swap(&mut chunk.samples, &mut scratch.subset);
+            } else {
+                chunk.samples.extend_from_slice(&scratch.subset);
+            }
             chunk.ends.push(chunk.samples.len());
         }
     }

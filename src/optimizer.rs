@@ -48,7 +48,7 @@ pub struct Config {
 impl Config {
     /// The defaults for a table of this extent: interval domains, the spatial Gaussian of the papers (`sigma_px =
     /// 2.1`), times the perceptual kernel at 60 frames per second if there are several frames, consecutive pairs of
-    /// dimensions and all of them at half their weight, unbiased, barycentric steps.
+    /// dimensions and all of them at half their weight, unbiased, barycentric steps of slices.
     pub fn new(extent: Extent, dims: usize) -> Self {
         let temporal = match extent.frames {
             0 | 1 => TemporalKernel::None,
