@@ -73,6 +73,62 @@ pub enum ConfigError {
     /// Nothing to optimise.
     #[error("the objective has no term with a positive weight: give at least one")]
     NoTerms,
+    /// A family of classes none of which holds a sample.
+    #[error("no class of {family} holds a sample: give at least one that does")]
+    NoClasses {
+        /// Which family.
+        family: &'static str,
+    },
+    /// A list of numbers does not have one per sample.
+    #[error("{what} holds {given} entries, but the table has {expected} samples: give one per sample")]
+    SampleCount {
+        /// Which list.
+        what: &'static str,
+        /// Entries given.
+        given: usize,
+        /// Samples of the table.
+        expected: usize,
+    },
+    /// A prefix that is empty or longer than what it is a part of.
+    #[error("a prefix has length {length}: give a length from 1 to {most}")]
+    PrefixLength {
+        /// The length given.
+        length: usize,
+        /// Samples of the whole.
+        most: usize,
+    },
+    /// A caller's own class cannot serve as one.
+    #[error("class {member} of \"{name}\" gives sample {sample} weight {weight}: {problem}")]
+    CustomClass {
+        /// Name of the family.
+        name: String,
+        /// Number of the class.
+        member: usize,
+        /// The sample.
+        sample: u32,
+        /// Its weight.
+        weight: f64,
+        /// What to do.
+        problem: &'static str,
+    },
+    /// A target cannot be projected on the dimensions of its term.
+    #[error("term {term}: the target has {target} dimensions, but the term sees {dims}: name as many dimensions")]
+    TargetDims {
+        /// Position of the term.
+        term: usize,
+        /// Dimensions of the target.
+        target: usize,
+        /// Dimensions of the term.
+        dims: usize,
+    },
+    /// A target that is not uniform in a dimension that wraps.
+    #[error("term {term} sees dimension {dimension}, a torus, but its target is not uniform: make it an interval")]
+    TargetOnTorus {
+        /// Position of the term.
+        term: usize,
+        /// The dimension.
+        dimension: usize,
+    },
     /// A demand that no term of the objective serves.
     #[error("nothing is demanded: demand at least one pixel and a dimension that a term sees")]
     NoDemand,

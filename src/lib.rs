@@ -112,7 +112,9 @@ mod target;
 mod term;
 mod transport;
 
-pub use class::{Classes, Form};
+pub use class::{
+    ClassFamily, Classes, CustomClasses, Form, LabelSet, Lengths, Member, PrefixLength, PrefixOf, Ramp,
+};
 pub use cramer::Sweeps;
 pub use demand::Demand;
 pub use descent::{Descent, Schedule, Shape};
