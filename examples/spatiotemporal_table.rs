@@ -15,7 +15,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use clap::{Parser, ValueEnum};
 use fsot::{
     BoundRecord, Config, Descent, DimensionGroup, Domain, Ended, Extent, Form, Kernel, KernelTaps, Metadata,
-    Objective, Optimizer, RunRecord, RunReport, SampleTable, SpatialKernel, TemporalKernel, Until, metrics,
+    Objective, Optimizer, RunRecord, RunReport, SampleTable, SpatialKernel, TemporalKernel, Until, Work,
+    metrics,
 };
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
@@ -53,13 +54,16 @@ struct Arguments {
     /// Whether a dimension ends or wraps.
     #[arg(long, value_enum, default_value_t = DomainName::Interval)]
     domain: DomainName,
-    /// How steps move the samples.
-    #[arg(long, value_enum, default_value_t = DescentName::Barycentric)]
-    optimizer: DescentName,
-    /// Slices drawn per pixel and frame over the whole run.
-    #[arg(long, default_value_t = 320, conflicts_with = "seconds")]
-    slices_per_class: u64,
-    /// Time for the optimisation alone, instead of a number of slices.
+    /// How slices move the samples [default: barycentric].
+    #[arg(long, value_enum)]
+    optimizer: Option<DescentName>,
+    /// Slices drawn per pixel and frame [default: 320 with --domain torus or --optimizer, 0 otherwise].
+    #[arg(long, conflicts_with = "seconds")]
+    slices_per_class: Option<u64>,
+    /// Sweeps over all samples, after the slices; impossible with --domain torus [default: 100 if there are no slices].
+    #[arg(long, conflicts_with = "seconds")]
+    sweeps: Option<u64>,
+    /// Time for the optimisation alone, instead of an amount of work.
     #[arg(long)]
     seconds: Option<f64>,
     /// Do not measure the bound before and after.
@@ -132,11 +136,7 @@ fn optimize(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.quiet {
         bar.set_draw_target(ProgressDrawTarget::hidden());
     }
-    let until = match arguments.seconds {
-        Some(seconds) => Until::Seconds(seconds),
-        None => Until::SlicesPerClass(arguments.slices_per_class),
-    };
-    let report = optimizer.run(until, |step| {
+    let report = optimizer.run(until(arguments), |step| {
         bar.set_length(step.steps);
         bar.set_position(step.step);
         bar.set_message(format!(", displacement {:.4}", step.displacement));
@@ -155,11 +155,11 @@ fn optimize(arguments: &Arguments) -> Result<(), Failure> {
     let taps = |term| Some(KernelTaps { term, taps: objective.taps(term)?.to_vec() });
     let kernels = (0..objective.terms().count()).filter_map(taps).collect();
     let table = optimizer.into_table();
-    let RunReport { slices_per_class, steps, .. } = report;
+    let RunReport { work: Work { slices_per_class, sweeps }, steps, .. } = report;
     let metadata = Metadata {
         kernels,
         bound,
-        run: RunRecord { slices_per_class, ended_early, steps, seconds },
+        run: RunRecord { slices_per_class, sweeps, ended_early, steps, seconds },
         ..Metadata::new(&table, arguments.seed, configuration)
     };
     table.save_with(&arguments.out, &metadata)?;
@@ -169,13 +169,8 @@ fn optimize(arguments: &Arguments) -> Result<(), Failure> {
     }
     // A reader that has gone away is an error like any other, not a panic.
     let mut out = std::io::stdout().lock();
-    let rate = report.slices as f64 / seconds / 1e6;
-    write!(out, "{seconds:.2} s, {} slices ({rate:.2} million/s), ", report.slices)?;
-    if ended_early {
-        writeln!(out, "stopped after {steps} steps of --slices-per-class {slices_per_class}")?;
-    } else {
-        writeln!(out, "--slices-per-class {slices_per_class}")?;
-    }
+    let ended = if ended_early { format!("stopped after {steps} steps of ") } else { String::new() };
+    writeln!(out, "{seconds:.2} s, {ended}--slices-per-class {slices_per_class} --sweeps {sweeps}")?;
     if let Some(BoundRecord { before, after }) = bound {
         writeln!(
             out,
@@ -192,6 +187,20 @@ fn optimize(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
+fn until(arguments: &Arguments) -> Until {
+    let Arguments { seconds, slices_per_class, sweeps, optimizer, domain, .. } = arguments;
+    match (seconds, slices_per_class, sweeps) {
+        (Some(seconds), ..) => Until::Seconds(*seconds),
+        (None, None, None) if optimizer.is_some() || matches!(domain, DomainName::Torus) => {
+            Until::SlicesPerClass(320)
+        }
+        (None, None, None) => Until::Sweeps(100),
+        _ => {
+            Until::Work(Work { slices_per_class: slices_per_class.unwrap_or(0), sweeps: sweeps.unwrap_or(0) })
+        }
+    }
+}
+
 fn config(arguments: &Arguments) -> Config {
     let Arguments { width, height, frames, spp, dims, sigma, .. } = *arguments;
     let extent = Extent { frames, height, width, spp };
@@ -206,9 +215,9 @@ fn config(arguments: &Arguments) -> Config {
         DomainName::Torus => Domain::Torus,
     };
     let descent = match arguments.optimizer {
-        DescentName::Barycentric => Descent::barycentric(),
-        DescentName::Adam => Descent::adam(),
-        DescentName::Sgd => Descent::sgd(),
+        None | Some(DescentName::Barycentric) => Descent::barycentric(),
+        Some(DescentName::Adam) => Descent::adam(),
+        Some(DescentName::Sgd) => Descent::sgd(),
     };
     let mut config = Config::new(extent, dims);
     config.domains.fill(domain);

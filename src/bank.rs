@@ -10,6 +10,8 @@
 //! for subsets of up to 4096 samples (4e-9 up to 97 samples), and by more than 4.2e-7 for 40,000; the f32 around it rounds by
 //! 1e-7. The tests below print the worst of each.
 
+use std::sync::Arc;
+
 use nalgebra::DMatrix;
 use rand::RngExt;
 use rand_distr::StandardNormal;
@@ -23,6 +25,26 @@ use crate::target::Target;
 #[derive(Clone, Debug)]
 pub(crate) struct Bank {
     blocks: Vec<Block>,
+}
+
+/// Banks that the terms of an objective share.
+#[derive(Debug, Default)]
+pub(crate) struct Banks {
+    made: Vec<(usize, Target, Arc<Bank>)>,
+}
+
+impl Banks {
+    /// The bank for `dims ≥ 3` dimensions, made at its first use.
+    pub(crate) fn bank(&mut self, dims: usize, target: &Target) -> Arc<Bank> {
+        match self.made.iter().find(|made| (made.0, &made.1) == (dims, target)) {
+            Some((_, _, bank)) => bank.clone(),
+            None => {
+                let bank = Arc::new(Bank::new(dims, target));
+                self.made.push((dims, *target, bank.clone()));
+                bank
+            }
+        }
+    }
 }
 
 /// As many directions as there are lanes.

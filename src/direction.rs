@@ -1,9 +1,13 @@
 //! Slicing directions of a dimension group, drawn for one subset at a time.
 
-use rand::{Rng, RngExt};
+use std::sync::Arc;
 
-use crate::bank::Bank;
+use rand::{Rng, RngExt};
+use rand_distr::StandardNormal;
+
+use crate::bank::{Bank, Banks};
 use crate::row::{LANES, Row};
+use crate::stream::{self, Purpose};
 use crate::target::Target;
 
 /// Draws the directions of subsets in one number of dimensions.
@@ -18,10 +22,27 @@ pub(crate) struct Slicer {
     dims: usize,
     per_subset: usize,
     axis_share: f64,
-    bank: Option<Bank>,
+    bank: Option<Arc<Bank>>,
     /// Cosine and sine of evenly spaced angles, turned as one for each subset. Where their number is even, the second
     /// half of them are the first turned by a right angle, and not listed.
     fan: Vec<[f64; 2]>,
+}
+
+/// The `index`th of `count` directions that are spread evenly: over the half circle in the plane, at random in more
+/// dimensions.
+pub(crate) fn spread(dims: usize, index: usize, count: usize) -> Vec<f64> {
+    if dims == 1 {
+        return vec![1.0];
+    }
+    if dims == 2 {
+        let angle = std::f64::consts::PI * (index as f64 + 0.5) / count as f64;
+        let (sin, cos) = libm::sincos(angle);
+        return vec![cos, sin];
+    }
+    let mut generator = stream::generator(0, Purpose::Frames, dims as u64, 1 << 32 | index as u64);
+    let gaussian: Vec<f64> = (0..dims).map(|_| generator.sample(StandardNormal)).collect();
+    let length = gaussian.iter().map(|component| component * component).sum::<f64>().sqrt();
+    gaussian.iter().map(|component| component / length.max(f64::MIN_POSITIVE)).collect()
 }
 
 /// Directions of one subset: lanes `0..count` are unit vectors, the others zero.
@@ -43,9 +64,15 @@ pub(crate) struct Directions {
 impl Slicer {
     /// Draws `per_subset` directions (`1..=LANES`; one in one dimension), of which the share `axis_share` lies
     /// on coordinate axes.
-    pub(crate) fn new(dims: usize, per_subset: usize, axis_share: f64, target: &Target) -> Self {
+    pub(crate) fn new(
+        dims: usize,
+        per_subset: usize,
+        axis_share: f64,
+        target: &Target,
+        banks: &mut Banks,
+    ) -> Self {
         let per_subset = if dims == 1 { 1 } else { per_subset.min(LANES) };
-        let bank = (dims > 2).then(|| Bank::new(dims, target));
+        let bank = (dims > 2).then(|| banks.bank(dims, target));
         let mut slicer = Self { dims, per_subset, axis_share, bank, fan: Vec::new() };
         let spacing = slicer.spacing();
         let listed = if per_subset % 2 == 0 { per_subset / 2 } else { per_subset };
@@ -61,7 +88,7 @@ impl Slicer {
     }
 
     pub(crate) fn bank(&self) -> Option<&Bank> {
-        self.bank.as_ref()
+        self.bank.as_deref()
     }
 
     /// Whether [`Slicer::draw`] asks its generator for anything.

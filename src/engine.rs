@@ -25,6 +25,8 @@ use crate::term::Role;
 const CHUNK: usize = 16;
 /// Chunks in flight: bounds the memory of a large step.
 const IN_FLIGHT: usize = 128;
+/// A step of few subsets is still shared between threads.
+const FEWEST_CHUNKS: usize = 8;
 /// Samples that the subsets of a chunk should not exceed in the mean, unless a single one does.
 const CHUNK_TOUCHES: usize = 1 << 13;
 
@@ -98,7 +100,7 @@ impl Engine {
             chunks.resize_with(chunks.len().max(1), Chunk::default);
             let (draws, chunk) = (std::slice::from_ref(draw), &mut chunks[0]);
             arch.dispatch(Transport { objective, seed, step, points, draws, chunk, scratch: large });
-            chunk.add_to(objective, draws, pull);
+            add_up(objective, std::slice::from_ref(chunk), draws, 1, pull);
         }
         draws.retain(|draw| !is_large(draw));
         // Fewer large subsets at a time, so that memory is bounded by samples and not by slices times samples.
@@ -108,7 +110,8 @@ impl Engine {
             .filter(|term| term.spec.role == pick.role())
             .map(|term| term.family.mean_size());
         let largest = sizes.fold(1.0, f64::max) as usize;
-        let per_chunk = (CHUNK_TOUCHES / largest).clamp(1, CHUNK);
+        let per_chunk =
+            (CHUNK_TOUCHES / largest).clamp(1, CHUNK).min(draws.len().div_ceil(FEWEST_CHUNKS).max(1));
         let in_flight = (CHUNK_TOUCHES * IN_FLIGHT / (largest * per_chunk)).clamp(2, IN_FLIGHT);
         for draws in draws.chunks(per_chunk * in_flight) {
             let used = draws.len().div_ceil(per_chunk);
@@ -120,9 +123,7 @@ impl Engine {
                 arch.dispatch(Transport { objective, seed, step, points, draws, chunk, scratch: &mut mine });
                 scratch.lock().unwrap_or_else(PoisonError::into_inner).push(mine);
             });
-            for (chunk, draws) in chunks.iter().zip(draws.chunks(per_chunk)) {
-                chunk.add_to(objective, draws, pull);
-            }
+            add_up(objective, chunks, draws, per_chunk, pull);
         }
     }
 }
@@ -222,11 +223,8 @@ impl Chunk {
         }
     }
 
-    /// Adds the moves to the samples that they belong to.
-    fn add_to(&self, objective: &Objective, draws: &[Draw], pull: &mut Pull) {
-        pull.slices += self.slices;
-        pull.squares += self.squares;
-        pull.mass += self.mass;
+    /// Adds the moves to those samples that they belong to whose coordinates `part` holds.
+    fn add_to(&self, objective: &Objective, draws: &[Draw], part: &mut Part) {
         let mut begin = 0;
         let mut moves = self.moves.as_slice();
         let mut masses = self.masses.iter();
@@ -240,21 +238,83 @@ impl Chunk {
                 Role::Descend => dims.len() as f32,
                 Role::Balance => 1.0,
             };
+            // 1 where the number of slices says all.
+            let emphasis = objective.emphasis(draw.term as usize, draw.member as usize) as f32;
+            let (factor, count) = (factor * emphasis, count * emphasis);
             let (these, rest) = moves.split_at((end - begin) * dims.len());
             let samples = &self.samples[begin..end];
             let weighted = term.family.is_weighted();
-            for (&sample, along) in samples.iter().zip(these.chunks_exact(dims.len())) {
-                let mass = if weighted { masses.next().copied().unwrap_or(0.0) } else { 1.0 };
-                for (&dim, along) in dims.iter().zip(along) {
-                    let coordinate = sample as usize * objective.dims + dim;
-                    pull.sums[coordinate] += factor * along;
-                    pull.hits[coordinate] += count * mass;
+            if let (&[x, y], false) = (dims.as_slice(), weighted) {
+                // The common case by itself, without a loop over two dimensions.
+                for (&sample, [along_x, along_y]) in samples.iter().zip(these.as_chunks::<2>().0) {
+                    let Some((sums, hits)) = part.sample(sample, objective.dims) else { continue };
+                    sums[x] += factor * along_x;
+                    sums[y] += factor * along_y;
+                    hits[x] += count;
+                    hits[y] += count;
+                }
+            } else {
+                for (&sample, along) in samples.iter().zip(these.chunks_exact(dims.len())) {
+                    let mass = if weighted { masses.next().copied().unwrap_or(0.0) } else { 1.0 };
+                    let Some((sums, hits)) = part.sample(sample, objective.dims) else { continue };
+                    for (&dim, along) in dims.iter().zip(along) {
+                        sums[dim] += factor * along;
+                        hits[dim] += count * mass;
+                    }
                 }
             }
             moves = rest;
             begin = end;
         }
     }
+}
+
+/// Coordinates of consecutive samples, with what pulls them.
+struct Part<'a> {
+    /// The first of the samples.
+    first: usize,
+    sums: &'a mut [f32],
+    hits: &'a mut [f32],
+}
+
+impl Part<'_> {
+    /// Sums and hits of a sample, if it is one of the part's.
+    #[inline(always)]
+    fn sample(&mut self, sample: u32, dims: usize) -> Option<(&mut [f32], &mut [f32])> {
+        // A sample before the first becomes a large number.
+        let first = (sample as usize).wrapping_sub(self.first).wrapping_mul(dims);
+        let last = first.wrapping_add(dims);
+        Some((self.sums.get_mut(first..last)?, self.hits.get_mut(first..last)?))
+    }
+}
+
+/// Samples whose moves are worth sharing between threads.
+const SHARED_MOVES: usize = 1 << 11;
+
+/// Adds the moves of all chunks. Each thread has a part of the table and looks for its samples in all of them, so that
+/// every sample is added to in the order of the draws, whatever the number of parts.
+fn add_up(objective: &Objective, chunks: &[Chunk], draws: &[Draw], per_chunk: usize, pull: &mut Pull) {
+    for chunk in chunks {
+        pull.slices += chunk.slices;
+        pull.squares += chunk.squares;
+        pull.mass += chunk.mass;
+    }
+    let samples = pull.sums.len() / objective.dims;
+    let moved: usize = chunks.iter().map(|chunk| chunk.samples.len()).sum();
+    let parts = if moved < SHARED_MOVES { 1 } else { rayon::current_num_threads() };
+    let per_part = samples.div_ceil(parts);
+    let add = |(index, (sums, hits)): (usize, (&mut [f32], &mut [f32]))| {
+        let mut part = Part { first: index * per_part, sums, hits };
+        for (chunk, draws) in chunks.iter().zip(draws.chunks(per_chunk)) {
+            chunk.add_to(objective, draws, &mut part);
+        }
+    };
+    if parts == 1 {
+        return add((0, (&mut pull.sums, &mut pull.hits)));
+    }
+    let coordinates = per_part * objective.dims;
+    let parts = pull.sums.par_chunks_mut(coordinates).zip(pull.hits.par_chunks_mut(coordinates));
+    parts.enumerate().for_each(add);
 }
 
 #[cfg(test)]

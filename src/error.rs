@@ -112,7 +112,9 @@ pub enum ConfigError {
         problem: &'static str,
     },
     /// A target cannot be projected on the dimensions of its term.
-    #[error("term {term}: the target has {target} dimensions, but the term sees {dims}: name as many dimensions")]
+    #[error(
+        "term {term}: the target has {target} dimensions, but the term sees {dims}: name as many dimensions"
+    )]
     TargetDims {
         /// Position of the term.
         term: usize,
@@ -122,7 +124,9 @@ pub enum ConfigError {
         dims: usize,
     },
     /// A target that is not uniform in a dimension that wraps.
-    #[error("term {term} sees dimension {dimension}, a torus, but its target is not uniform: make it an interval")]
+    #[error(
+        "term {term} sees dimension {dimension}, a torus, but its target is not uniform: make it an interval"
+    )]
     TargetOnTorus {
         /// Position of the term.
         term: usize,

@@ -196,16 +196,25 @@ fn projected(point: &[f32], theta: &[Row]) -> Row {
 fn encode<S: Simd>(simd: S, projections: &[Row], extent: &Row, keys: &mut [[u32; LANES]]) {
     /// Room for the rounding of projections at the ends of the support, in up to a thousand dimensions.
     const INSIDE: f32 = 1.0 - 1.0 / 4096.0;
+    const MANTISSA: u32 = f32::MANTISSA_DIGITS - 1;
     let mut scale = [0.0; LANES];
     let (inside, least) = (simd.splat_f32s(INSIDE), simd.splat_f32s(f32::MIN_POSITIVE));
     for (scale, extent) in S::as_mut_simd_f32s(&mut scale).0.iter_mut().zip(S::as_simd_f32s(extent).0) {
         // An unused lane has extent 0; its keys need only be defined.
         *scale = simd.div_f32s(inside, simd.max_f32s(*extent, least));
     }
-    for (place, (projection, key)) in projections.iter().zip(keys).enumerate() {
-        for lane in 0..LANES {
-            let bits = (1.5 + projection[lane] * scale[lane]).to_bits();
-            key[lane] = (bits << 9) & !PLACE_MASK | place as u32;
+    let (scale, _) = S::as_simd_f32s(&scale);
+    let (projections, _) = S::as_simd_f32s(projections.as_flattened());
+    let (keys, _) = S::as_mut_simd_u32s(keys.as_flattened_mut());
+    let (middle, shift) = (simd.splat_f32s(1.5), simd.splat_u32s(u32::BITS - MANTISSA));
+    let value_mask = simd.splat_u32s(!PLACE_MASK);
+    let rows = projections.chunks_exact(scale.len()).zip(keys.chunks_exact_mut(scale.len()));
+    for (place, (projection, key)) in rows.enumerate() {
+        let place = simd.splat_u32s(place as u32);
+        for ((key, projection), scale) in key.iter_mut().zip(projection).zip(scale) {
+            let unit = simd.add_f32s(middle, simd.mul_f32s(*projection, *scale));
+            let bits = simd.wrapping_dyn_shl_u32s(simd.transmute_u32s_f32s(unit), shift);
+            *key = simd.or_u32s(simd.and_u32s(bits, value_mask), place);
         }
     }
 }
@@ -239,7 +248,9 @@ fn displace(projections: &[Row], targets: &[Row], theta: &[Row], quarters: &mut 
         dims => {
             let mut squares = [0.0; LANES];
             let samples = projections.iter().zip(targets).zip(quarters.chunks_exact_mut(dims));
-            samples.for_each(|((from, to), halves)| displaced(from, to, theta, halves, &mut squares));
+            for ((from, to), quarters) in samples {
+                displaced(from, to, theta, quarters, &mut squares);
+            }
             squares
         }
     }
@@ -256,7 +267,10 @@ fn displace_in<const DIMS: usize>(
     let (quarters, _) = quarters.as_chunks_mut::<DIMS>();
     let Some(theta) = theta.first_chunk::<DIMS>() else { return squares };
     let samples = projections.iter().zip(targets).zip(quarters);
-    samples.for_each(|((from, to), quarters)| displaced(from, to, theta, quarters, &mut squares));
+    // A loop and no `for_each`, which might be compiled apart, for another instruction set.
+    for ((from, to), quarters) in samples {
+        displaced(from, to, theta, quarters, &mut squares);
+    }
     squares
 }
 

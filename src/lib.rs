@@ -99,6 +99,7 @@ mod npy;
 mod objective;
 mod optimizer;
 mod plan;
+mod point_set;
 mod pull;
 #[cfg(feature = "render")]
 pub mod render;
@@ -125,6 +126,7 @@ pub use lattice::{Extent, Site};
 pub use metadata::{BoundEstimate, BoundRecord, KernelTaps, Metadata, RunRecord};
 pub use objective::{Objective, Slice};
 pub use optimizer::{Config, Optimizer};
+pub use point_set::Subsets;
 pub use run::{Ended, RunReport, StepReport, Until, Work};
 pub use table::SampleTable;
 pub use target::{Projected, Target};

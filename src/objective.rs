@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use crate::bank::Banks;
 use crate::class::{Classes, Form, Wanted};
 use crate::cramer;
 use crate::demand::Demand;
@@ -9,7 +10,7 @@ use crate::domain::Domain;
 use crate::error::ConfigError;
 use crate::kernel::{Kernel, Tap};
 use crate::lattice::Extent;
-use crate::plan::{PlannedTerm, classes};
+use crate::plan::{PlannedTerm, classes, share_work};
 use crate::table::SampleTable;
 use crate::target::Target;
 use crate::term::{DimensionGroup, Role, Slicing, Term};
@@ -123,18 +124,11 @@ impl Objective {
             return Err(ConfigError::NoTerms);
         }
         slicing.validate()?;
-        let mut planned = Vec::new();
+        let (mut planned, mut banks) = (Vec::new(), Banks::default());
         for (index, term) in terms.iter().enumerate() {
-            planned.push(PlannedTerm::new(index, term, extent, dims, slicing, wanted.clone())?);
+            planned.push(PlannedTerm::new(index, term, extent, dims, slicing, wanted.clone(), &mut banks)?);
         }
-        let classes = classes(&planned, extent);
-        let slices = slicing.batch_slices.unwrap_or_else(|| (classes * slicing.directions).div_ceil(16));
-        // Touches are shared by weight; a slice touches as many samples as its subset holds.
-        let slices_of = |term: &PlannedTerm| term.spec.weight / term.family.mean_size();
-        let total: f64 = planned.iter().map(slices_of).sum();
-        for term in &mut planned {
-            term.rate = slices_of(term) / total * slices as f64 / term.slicer.per_subset() as f64;
-        }
+        share_work(&mut planned, extent, slicing);
         Ok(Self { extent, dims, domains: domains.to_vec(), terms: planned, wanted })
     }
 
@@ -188,14 +182,21 @@ impl Objective {
         self.terms.get(term)?.family.taps()
     }
 
-    /// Slices of lattice terms that a step draws per visited pixel and frame, in the mean.
+    /// Slices of lattice terms that a step draws per visited pixel and frame, in the mean; per class where none of the
+    /// terms has classes per pixel.
     pub(crate) fn slices_per_class_and_step(&self) -> f64 {
+        let steady: Vec<_> =
+            self.terms.iter().filter(|term| term.steady && term.spec.role == Role::Descend).collect();
+        if !steady.is_empty() {
+            let slices: f64 = steady.iter().map(|term| term.slices()).sum();
+            return slices / steady.iter().map(|term| term.family.visited()).sum::<usize>() as f64;
+        }
         let slices = |term: &PlannedTerm| match term.spec.classes {
-            Classes::Lattice { .. } => term.rate * term.slicer.per_subset() as f64,
+            Classes::Lattice { .. } => term.slices(),
             _ => 0.0,
         };
         let lattice: f64 = self.terms.iter().map(slices).sum();
-        let all: f64 = self.terms.iter().map(|term| term.rate * term.slicer.per_subset() as f64).sum();
+        let all: f64 = self.terms.iter().map(PlannedTerm::slices).sum();
         (if lattice > 0.0 { lattice } else { all }) / classes(&self.terms, self.extent) as f64
     }
 
@@ -217,7 +218,7 @@ impl Objective {
         Ok(cramer::value_and_gradient(self, points))
     }
 
-    /// Mean over `slices` of `(n / N) W2²` and its gradient with respect to every coordinate, in `f64`.
+    /// Mean over `slices` of `(n / N) W2²`, times the weight of the class, and its gradient with respect to every coordinate, in `f64`.
     ///
     /// `points` are the coordinates of all samples in the order of [`crate::SampleTable`], in `[0, 1)`; the gradient has
     /// the same order. The weighted form replaces `n` by the sum of relative weights. An empty list of slices has
@@ -242,6 +243,7 @@ impl Objective {
             let moved: Vec<_> = slices.par_iter().map(|slice| self.transport(points, slice)).collect();
             for (slice, moved) in slices.iter().zip(moved) {
                 let dims = &self.terms[slice.term].spec.dims;
+                let scale = scale * self.emphasis(slice.term, slice.member);
                 value += scale * moved.cost;
                 for (&sample, displacement) in moved.samples.iter().zip(moved.displacements) {
                     for (&dim, component) in dims.iter().zip(&slice.direction) {
@@ -292,6 +294,13 @@ impl Objective {
             };
             dims.iter().enumerate().map(along).sum::<f64>()
         }));
+    }
+
+    /// Factor on what the slices of a class pull.
+    #[inline(always)]
+    pub(crate) fn emphasis(&self, term: usize, member: usize) -> f64 {
+        let term = &self.terms[term];
+        term.pull * term.family.emphasis(member)
     }
 
     /// Refuses a table of another shape, also one that holds as many values.

@@ -268,7 +268,7 @@ impl Optimizer {
                 (displacement, rate)
             } else {
                 let progress = (step - batches) as f64 / (steps - batches) as f64;
-                let rate = self.config.sweeps.of_a_run(work.sweeps).at(progress);
+                let rate = self.config.sweeps.of_a_run(work).at(progress);
                 let part = (step - batches) as usize % cramer::STEPS;
                 (self.sweep_step(part, rate, self.config.balance.at(progress))?.sqrt(), rate)
             };

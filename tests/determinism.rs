@@ -3,7 +3,7 @@
 
 use std::ops::ControlFlow;
 
-use fsot::{Config, Descent, Ended, Extent, Optimizer, Role, SampleTable, StepReport, Until, metrics};
+use fsot::{Config, Descent, Ended, Extent, Optimizer, Role, SampleTable, StepReport, Until, Work, metrics};
 
 fn config(extent: [usize; 4], dims: usize, descent: Descent, seed: u64) -> Config {
     let [frames, height, width, spp] = extent;
@@ -47,7 +47,7 @@ fn threads_do_not_change_a_bit() {
                 let mut optimizer = optimizer(&config);
                 let mut displacements = Vec::new();
                 let report = optimizer
-                    .run(Until::SlicesPerClass(10), |step| {
+                    .run(Until::Work(Work { slices_per_class: 10, sweeps: 2 }), |step| {
                         displacements.push(step.displacement.to_bits());
                         ControlFlow::Continue(())
                     })
@@ -123,9 +123,9 @@ fn seconds_are_reproduced_by_slices() {
         let report = timed.run(Until::Seconds(0.1), on).unwrap();
         assert_eq!(report.ended, Ended::Finished);
         let mut counted = optimizer(&config);
-        let again = counted.run(Until::SlicesPerClass(report.slices_per_class), on).unwrap();
+        let again = counted.run(Until::Work(report.work), on).unwrap();
         assert_eq!((again.steps, again.slices), (report.steps, report.slices));
-        assert_eq!(again.slices_per_class, report.slices_per_class);
+        assert_eq!(again.work, report.work);
         assert!(bits(&timed.table()) == bits(&counted.table()), "{:?}", config.extent);
     }
 }
@@ -133,11 +133,11 @@ fn seconds_are_reproduced_by_slices() {
 /// The number of slices that a run reports plans the same run again, whatever it was planned by.
 #[test]
 fn any_run_is_reproduced_by_its_slices() {
-    for until in [Until::Epochs(3), Until::SlicesPerClass(37), Until::SlicesPerClass(1)] {
+    for until in [Until::Epochs(3), Until::SlicesPerClass(37), Until::SlicesPerClass(1), Until::Sweeps(2)] {
         let config = config([1, 12, 10, 1], 3, Descent::barycentric(), 4);
         let (mut first, mut second) = (optimizer(&config), optimizer(&config));
         let report = first.run(until, on).unwrap();
-        let again = second.run(Until::SlicesPerClass(report.slices_per_class), on).unwrap();
+        let again = second.run(Until::Work(report.work), on).unwrap();
         assert_eq!(report.steps, again.steps, "{until:?} {report:?}");
         assert_eq!(bits(&first.table()), bits(&second.table()), "{until:?}");
     }
@@ -159,6 +159,23 @@ fn halves_of_steps_make_the_whole() {
         }
         assert_eq!(bits(&whole.table()), bits(&halves.table()));
     }
+}
+
+#[test]
+fn halves_of_sweeps_make_the_whole() {
+    let config = config([2, 12, 20, 1], 3, Descent::barycentric(), 11);
+    let (mut whole, mut halves) = (optimizer(&config), optimizer(&config));
+    for _ in 0..4 {
+        whole.sweep(1.0, 1.0).unwrap();
+    }
+    for _ in 0..2 {
+        halves.sweep(1.0, 1.0).unwrap();
+        // The table may have been replaced in between.
+        let table = halves.table();
+        halves.start_from(table).unwrap();
+        halves.sweep(1.0, 1.0).unwrap();
+    }
+    assert_eq!(bits(&whole.table()), bits(&halves.table()));
 }
 
 /// What is kept is what the steps up to the break made, on the schedule of the whole run.
@@ -195,6 +212,7 @@ fn steps_of_size_zero_leave_the_table() {
     let before = bits(&optimizer.table());
     for _ in 0..5 {
         optimizer.step(0.0, 0.0);
+        optimizer.sweep(0.0, 0.0).unwrap();
     }
     assert_eq!(bits(&optimizer.table()), before);
 }

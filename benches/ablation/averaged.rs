@@ -37,5 +37,5 @@ fn plan(optimizer: &mut Optimizer, until: Until) -> Result<(u64, f64), Failure> 
         steps = first.steps;
         ControlFlow::Break(())
     })?;
-    Ok((steps, report.slices_per_class as f64))
+    Ok((steps, report.work.slices_per_class as f64))
 }

@@ -174,7 +174,7 @@ fn make(config: Config, making: Making, until: Until) -> Result<(SampleTable, f6
         return averaged::run(optimizer, until, share);
     }
     let report = optimizer.run(until, |_| ControlFlow::Continue(()))?;
-    Ok((optimizer.into_table(), report.slices_per_class as f64, report.elapsed.as_secs_f64()))
+    Ok((optimizer.into_table(), report.work.slices_per_class as f64, report.elapsed.as_secs_f64()))
 }
 
 fn mean(outcomes: &[Outcome]) -> Outcome {

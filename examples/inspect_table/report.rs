@@ -75,10 +75,11 @@ pub fn metadata(
         Some(Ok((_, metadata))) => {
             writeln!(
                 out,
-                "metadata: fsot {}, seed {}, {} slices per pixel in {} steps, {:.2} s",
+                "metadata: fsot {}, seed {}, {} slices per pixel and {} sweeps in {} steps, {:.2} s",
                 metadata.crate_version,
                 metadata.seed,
                 metadata.run.slices_per_class,
+                metadata.run.sweeps,
                 metadata.run.steps,
                 metadata.run.seconds
             )?;

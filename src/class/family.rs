@@ -25,7 +25,8 @@ pub(crate) struct Family {
 enum Shape {
     /// Runs of consecutive sites of equal length.
     Blocks { sites: usize, wanted: Wanted },
-    /// Taps by falling weight, with offsets made non-negative modulo the extent.
+    /// Taps by falling weight, with offsets made non-negative modulo the extent and counted in sites: frames, rows,
+    /// columns.
     Lattice { taps: Vec<Tap>, offsets: Vec<[u32; 3]>, form: Form, wanted: Wanted },
     /// Runs from the start of a block of samples.
     Prefixes { prefixes: Prefixes, wanted: Wanted },
@@ -61,8 +62,9 @@ impl Family {
             Classes::Lattice { kernel, form } => kernel.taps(&extent).map(|taps| {
                 let forward = |by: i32, len: usize| by.rem_euclid(len as i32) as u32;
                 let offsets = taps.iter().map(|tap| {
-                    let [t, y, x] = [extent.frames, extent.height, extent.width];
-                    [forward(tap.dt, t), forward(tap.dy, y), forward(tap.dx, x)]
+                    let Extent { frames, height, width, .. } = extent;
+                    let [row, frame] = [width, width * height].map(|sites| sites as u32);
+                    [forward(tap.dt, frames) * frame, forward(tap.dy, height) * row, forward(tap.dx, width)]
                 });
                 Shape::Lattice { offsets: offsets.collect(), taps, form: *form, wanted: wanted.clone() }
             }),
@@ -247,25 +249,35 @@ impl Family {
                     .filter(|&site| wanted.site(site))
                     .for_each(|site| visit(site, 1.0));
             }
-            Shape::Lattice { taps, offsets, form, wanted } => {
-                let Extent { frames, height, width, .. } = self.extent;
-                let [frames, height, width] = [frames, height, width].map(|len| len as u32);
-                let site = self.extent.site(member);
-                let [t, y, x] = [site.frame, site.y, site.x].map(|at| at as u32);
-                let wrap = |at: u32, len: u32| if at >= len { at - len } else { at };
-                let count = match form {
-                    Form::Weighted => taps.len(),
-                    Form::LevelSets => taps.partition_point(|tap| tap.weight > level),
-                };
-                for (&[dt, dy, dx], tap) in offsets[..count].iter().zip(taps) {
-                    let row = wrap(t + dt, frames) * height + wrap(y + dy, height);
-                    let site = (row * width + wrap(x + dx, width)) as usize;
+            Shape::Lattice { taps, wanted, .. } => {
+                for (site, tap) in self.tapped_sites(member, level).zip(taps) {
+                    let site = site as usize;
                     if wanted.site(site) {
                         visit(site, tap.weight);
                     }
                 }
             }
         }
+    }
+
+    /// Sites under the taps of a lattice class whose weight exceeds `level`, demanded or not, in the order of the taps.
+    #[inline(always)]
+    fn tapped_sites(&self, member: usize, level: f64) -> impl Iterator<Item = u32> {
+        let offsets = match &self.shape {
+            Shape::Prefixes { .. } | Shape::Listed(_) => &[],
+            Shape::Blocks { .. } => &[],
+            Shape::Lattice { offsets, form: Form::Weighted, .. } => offsets.as_slice(),
+            Shape::Lattice { taps, offsets, form: Form::LevelSets, .. } => {
+                &offsets[..taps.partition_point(|tap| tap.weight > level)]
+            }
+        };
+        let Extent { frames, height, width, .. } = self.extent;
+        let [row, frame, all] = [width, width * height, width * height * frames].map(|sites| sites as u32);
+        let site = member as u32;
+        let (x, y, t) = (site % row, site % frame - site % row, site - site % frame);
+        // Where it goes below zero it becomes a large number, so that the lesser one is inside.
+        let wrap = |at: u32, len: u32| at.min(at.wrapping_sub(len));
+        offsets.iter().map(move |&[dt, dy, dx]| wrap(t + dt, all) + wrap(y + dy, frame) + wrap(x + dx, row))
     }
 
     /// Writes the numbers of the demanded samples of class `member` whose weight exceeds `level` (in `[0, 1)`, relative
@@ -278,6 +290,10 @@ impl Family {
             Shape::Prefixes { prefixes, wanted } => {
                 let run = prefixes.run(member);
                 return samples.extend(run.filter(|&sample| wanted.site((sample / spp) as usize)));
+            }
+            Shape::Lattice { wanted: Wanted::All, .. } if spp == 1 => {
+                // The common case by itself, without a choice per sample.
+                return samples.extend(self.tapped_sites(member, level));
             }
             Shape::Blocks { .. } | Shape::Lattice { .. } => {}
         }

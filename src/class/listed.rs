@@ -171,7 +171,9 @@ impl Listed {
     pub(crate) fn above(&self, member: usize, level: f64) -> &[u32] {
         let list = self.list(member);
         let count = match self.weights.get(list.clone()) {
-            Some(weights) if self.has_levels() => weights.partition_point(|&weight| f64::from(weight) > level),
+            Some(weights) if self.has_levels() => {
+                weights.partition_point(|&weight| f64::from(weight) > level)
+            }
             _ => list.len(),
         };
         &self.samples[list][..count]

@@ -62,7 +62,9 @@ impl Prefixes {
                 let powers = std::iter::successors(Some(1_usize), |length| length.checked_mul(2));
                 powers.take_while(|&length| length < block).chain([block]).map(weighed).collect()
             }
-            Lengths::Given(given) if given.is_empty() => return Err(ConfigError::NoClasses { family: "prefixes" }),
+            Lengths::Given(given) if given.is_empty() => {
+                return Err(ConfigError::NoClasses { family: "prefixes" });
+            }
             Lengths::Given(given) => given.clone(),
         };
         for &PrefixLength { length, weight } in &lengths {

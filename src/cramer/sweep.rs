@@ -13,38 +13,46 @@ use crate::domain::Domain;
 use crate::error::ConfigError;
 use crate::objective::Objective;
 use crate::row::{LANES, Row};
+use crate::run::Work;
 use crate::stream::{self, Purpose};
 use crate::term::Role;
 
 /// Steps per sweep: the samples of a step move together, so that they had better not be neighbours.
 pub(crate) const STEPS: usize = 16;
 
-/// How sweeps move the samples.
+/// How sweeps move the samples: `x ← x + rate · pull`, where the pull on a sample is the mean unit vector away from its
+/// neighbours less that away from a uniform point, times `d c_d` in a group of `d` dimensions (1.27 in the plane).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sweeps {
-    /// Step size: `x ← x + rate · pull`, where the pull on a sample is the mean unit vector away from its neighbours less that
-    /// away from a uniform point, times `d c_d` in a group of `d` dimensions (1.27 in the plane). A run of `n` sweeps does
-    /// not go below the first value divided by `n`: there is no time for more.
+    /// Step size of a run of sweeps alone. One of `n` sweeps doesn't go below the first value divided by `n`: there is no
+    /// time for more.
     pub rate: Schedule,
+    /// Step size of sweeps that follow slices in a run. Larger ones would undo what the slices have arranged.
+    pub polish: Schedule,
     /// Pairs held together less than this share of the strongest are left out; in `[0, 1)`.
     pub truncation: f64,
 }
 
 impl Default for Sweeps {
     fn default() -> Self {
-        Self { rate: Schedule::geometric(5.0, 0.3), truncation: 0.02 }
+        let [rate, polish] = [5.0, 3.0].map(|first| Schedule::geometric(first, 0.4));
+        Self { rate, polish, truncation: 0.02 }
     }
 }
 
 impl Sweeps {
-    /// The step size over a run of so many sweeps.
-    pub(crate) fn of_a_run(&self, sweeps: u64) -> Schedule {
+    /// The step size over the sweeps of a run.
+    pub(crate) fn of_a_run(&self, work: Work) -> Schedule {
+        if work.slices_per_class > 0 {
+            return self.polish;
+        }
         let Schedule { first, last, shape } = self.rate;
-        Schedule { first, last: last.max(first / sweeps.max(1) as f64), shape }
+        Schedule { first, last: last.max(first / work.sweeps.max(1) as f64), shape }
     }
 
     pub(crate) fn validate(&self) -> Result<(), ConfigError> {
         self.rate.validate()?;
+        self.polish.validate()?;
         let (name, value, expected) = ("the truncation of sweeps", self.truncation, "in [0, 1)");
         if (0.0..1.0).contains(&value) {
             Ok(())
@@ -152,13 +160,32 @@ impl Sweeper {
         }
         squares / (moved * dims).max(1) as f64
     }
+
+    /// The pulls of a step that was just taken, by coordinate.
+    #[cfg(test)]
+    pub(super) fn each_pull(&self, step: usize, mut visit: impl FnMut(usize, f32)) {
+        let runs = self.order.chunks(self.step_size()).nth(step).unwrap_or_default();
+        for (pulls, &run) in self.pulls.chunks_exact(self.dims).zip(runs) {
+            let run = self.planes.run(run as usize);
+            for lane in (0..self.planes.len(run)).filter(|&lane| self.planes.wants(run, lane)) {
+                let first = self.planes.first(run, lane);
+                pulls.iter().enumerate().for_each(|(dim, pull)| visit(first + dim, pull[lane]));
+            }
+        }
+    }
+
+    #[cfg(test)]
+    pub(super) fn pull_of_run<'a>(&'a self, run: usize, pulls: &'a mut [Row]) -> PullOfRun<'a> {
+        let Self { terms, factors, planes, margin, .. } = self;
+        PullOfRun { terms, factors, planes, margin: *margin, run: planes.run(run), pulls }
+    }
 }
 
 /// Runs per task: some ten microseconds.
 const RUNS_PER_TASK: usize = 2;
 
 /// The pull on one run, compiled once per instruction set.
-struct PullOfRun<'a> {
+pub(super) struct PullOfRun<'a> {
     terms: &'a [Pairs],
     factors: &'a [Vec<f32>],
     planes: &'a Planes,

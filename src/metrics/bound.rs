@@ -158,7 +158,8 @@ fn distances(
         }
         planned.family.weigh(slice.member, &mut weights);
         let weights = planned.family.is_weighted().then_some(weights.as_slice());
-        let mass = weights.map_or(samples.len() as f64, |weights| weights.iter().sum());
+        let mass = weights.map_or(samples.len() as f64, |weights| weights.iter().sum())
+            * planned.family.emphasis(slice.member);
         objective.project(points, &slice, &samples, &mut projections);
         of_table += mass * workspace.w1(&law, &projections, weights);
         for projection in &mut projections {

@@ -10,6 +10,7 @@
 //! | what is the objective worth, with exact distances? | [`bound()`] |
 //! | does the table as a whole, a frame, a pixel estimate integrals too high or too low? | [`Bias`] |
 //! | are the samples spread evenly over the square? | [`Histogram`], [`l2_star_discrepancy`] |
+//! | how far is a point set from its target? | [`sliced_w2`] |
 //! | at which frequencies is the error? | [`Spectra`] |
 //!
 //! All but the histogram of a table measure one *dimension group* `dims`: the list of table dimensions that a
@@ -27,6 +28,7 @@ mod integrands;
 #[cfg(feature = "render")]
 mod picture;
 mod ratios;
+mod sliced;
 mod spectrum;
 mod uniformity;
 mod volume;
@@ -41,5 +43,6 @@ pub use integrands::Integrand;
 #[cfg(feature = "render")]
 pub use picture::{gray, write_gray_png, write_radial_csv};
 pub use ratios::{Estimate, Ratios};
+pub use sliced::sliced_w2;
 pub use spectrum::{RadialBin, Spectra};
 pub use uniformity::Histogram;

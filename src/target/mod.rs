@@ -35,4 +35,14 @@ impl Target {
             Target::UniformCube => Projected::of_cube(direction),
         }
     }
+
+    /// Dimensions of the target; `None` where any number will do.
+    pub fn dims(&self) -> Option<usize> {
+        None
+    }
+
+    /// Lengths of the sides of the unit cube in the space where the target measures distances.
+    pub fn scales(&self, dims: usize) -> Vec<f64> {
+        vec![1.0; dims]
+    }
 }

@@ -36,7 +36,7 @@ fn a_run_writes_a_table_and_how_it_was_made() {
     assert!((ratios[0] - 1.0).abs() < 0.1 && ratios[1] < 0.7, "{ratios:?}");
     assert!(metadata.run.seconds > 0.0);
     // The summary says the same.
-    assert!(out.contains("--slices-per-class 100"), "{out}");
+    assert!(out.contains("--slices-per-class 100 --sweeps 0"), "{out}");
     assert!(out.contains(&format!("{:.5} ± ", bound.after.value)), "{out}");
     assert!(out.contains("table.npy, table.json"), "{out}");
     assert_eq!(out.lines().count(), 3, "{out}");
@@ -100,7 +100,8 @@ fn quiet_is_silent() {
 fn threads_give_identical_bytes() {
     let home = tempdir().unwrap();
     let table = |threads| {
-        succeed(home.path(), &format!("{SMALL} --slices-per-class 32 --no-bound --threads {threads}"));
+        let work = "--slices-per-class 32 --sweeps 2";
+        succeed(home.path(), &format!("{SMALL} {work} --no-bound --threads {threads}"));
         fs::read(home.path().join("table.npy")).unwrap()
     };
     let alone = table(1);
@@ -108,13 +109,13 @@ fn threads_give_identical_bytes() {
 }
 
 #[test]
-fn seconds_and_then_their_slices_give_identical_bytes() {
+fn seconds_and_then_their_work_give_identical_bytes() {
     let home = tempdir().unwrap();
     let (out, _) = succeed(home.path(), &format!("{SMALL} --no-bound --seconds 0.3"));
     let timed = fs::read(home.path().join("table.npy")).unwrap();
     let words: Vec<&str> = out.split_whitespace().collect();
     let flag = words.iter().position(|&word| word == "--slices-per-class").expect(&out);
-    succeed(home.path(), &format!("{SMALL} --no-bound --slices-per-class {}", words[flag + 1]));
+    succeed(home.path(), &format!("{SMALL} --no-bound {}", words[flag..flag + 4].join(" ")));
     assert!(fs::read(home.path().join("table.npy")).unwrap() == timed, "{out}");
 }
 

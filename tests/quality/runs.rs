@@ -19,9 +19,9 @@ fn epochs_and_slices_are_counted() {
     let per_class = report.slices as f64 / 256.0;
     assert!((48.0..48.0 / lattice_share).contains(&per_class), "{report:?}");
     assert!((48..=52).contains(&report.steps), "{report:?}");
-    assert_eq!(report.slices_per_class, 48);
+    assert_eq!(report.work.slices_per_class, 48);
     let report = small().run(Until::SlicesPerClass(48), on).unwrap();
-    assert_eq!(report.slices_per_class, 48);
+    assert_eq!(report.work.slices_per_class, 48);
     let report = small().run(Until::SlicesPerClass(0), on).unwrap();
     assert_eq!((report.steps, report.slices, report.ended), (0, 0, Ended::Finished));
 }
@@ -59,7 +59,7 @@ fn a_run_ends_when_it_no_longer_improves() {
     // A rule that never holds leaves the limit.
     let until = Until::Converged { improvement: 0.0, window_steps: 1000, at_most: 16 };
     let report = small().run(until, on).unwrap();
-    assert_eq!((report.ended, report.slices_per_class), (Ended::Finished, 16));
+    assert_eq!((report.ended, report.work.slices_per_class), (Ended::Finished, 16));
 }
 
 #[test]

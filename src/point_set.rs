@@ -1,0 +1,87 @@
+//! Point sets: configurations for a few classes instead of a lattice of pixels.
+
+use std::sync::Arc;
+
+use crate::class::{Classes, LabelSet, Lengths, PrefixOf};
+use crate::lattice::Extent;
+use crate::optimizer::Config;
+use crate::target::Target;
+use crate::term::{Role, Term};
+
+/// Which sets of labels are classes of their own.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Subsets {
+    /// Each label, and all of them together.
+    EachAndAll,
+    /// Every set of labels but the empty one: 3 classes for two labels, 7 for three, 15 for four.
+    Every,
+    /// These.
+    Given(Vec<Vec<u32>>),
+}
+
+impl Subsets {
+    /// The sets for labels from 0 to `labels - 1`, each once.
+    fn list(&self, labels: usize) -> Vec<Vec<u32>> {
+        let all = || (0..labels as u32).collect::<Vec<_>>();
+        match self {
+            Subsets::Given(given) => given.clone(),
+            Subsets::EachAndAll if labels == 1 => vec![all()],
+            Subsets::EachAndAll => all().into_iter().map(|label| vec![label]).chain([all()]).collect(),
+            Subsets::Every => {
+                let held = |set: u64| all().into_iter().filter(move |label| set >> label & 1 == 1).collect();
+                (1..1_u64 << labels.min(MOST_LABELS)).map(held).collect()
+            }
+        }
+    }
+}
+
+/// Labels all of whose sets are classes.
+const MOST_LABELS: usize = 12;
+
+impl Config {
+    /// The defaults for a set of `count` points: these terms, interval domains, barycentric steps.
+    ///
+    /// Each step draws 16 directions for every class (for 16 of them, if a term has more), and terms are weighed by what they
+    /// pull. 1,000 to 4,000 slices per class make a good set.
+    pub fn point_set(count: usize, dims: usize, terms: Vec<Term>) -> Self {
+        Self { terms, ..Self::new(Extent::points(count), dims) }
+    }
+
+    /// A set of `counts.len()` classes: `counts[0]` points labelled 0, then `counts[1]` labelled 1, …; each of the
+    /// `subsets` of labels is to be uniform by itself.
+    ///
+    /// Two labels of 512 points: `Config::classes(&[512, 512], 2, &Subsets::EachAndAll)`.
+    pub fn classes(counts: &[usize], dims: usize, subsets: &Subsets) -> Self {
+        let labels = labels(counts);
+        let size = |set: &Vec<u32>| -> f64 {
+            let count = |label: &u32| counts.get(*label as usize).copied().unwrap_or(0) as f64;
+            set.iter().map(count).sum()
+        };
+        let sets = subsets.list(counts.len());
+        let weighed = sets.into_iter().map(|set| LabelSet { weight: weight_of(size(&set)), labels: set });
+        let classes = Classes::Labelled { labels: labels.clone(), subsets: weighed.collect() };
+        Self::point_set(labels.len(), dims, vec![whole(classes, Target::UniformCube, dims)])
+    }
+
+    /// A progressive sequence: the first 1, 2, 4, … points are uniform, and so are as many as `lengths` says.
+    pub fn progressive(count: usize, dims: usize, lengths: Lengths) -> Self {
+        let classes = Classes::Prefixes { of: PrefixOf::Table, lengths };
+        Self::point_set(count, dims, vec![whole(classes, Target::UniformCube, dims)])
+    }
+}
+
+/// `counts[0]` times 0, `counts[1]` times 1, and so on.
+pub(crate) fn labels(counts: &[usize]) -> Arc<[u32]> {
+    let runs = counts.iter().enumerate().map(|(label, &count)| std::iter::repeat_n(label as u32, count));
+    runs.flatten().collect()
+}
+
+/// A class of this size is as far from its best as one of another size relative to what that is.
+pub(crate) fn weight_of(size: f64) -> f64 {
+    size.max(1.0).sqrt()
+}
+
+/// A term over all dimensions.
+pub(crate) fn whole(classes: Classes, target: Target, dims: usize) -> Term {
+    Term { classes, target, dims: (0..dims).collect(), weight: 1.0, role: Role::Descend }
+}
