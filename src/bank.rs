@@ -40,7 +40,7 @@ impl Banks {
             Some((_, _, bank)) => bank.clone(),
             None => {
                 let bank = Arc::new(Bank::new(dims, target));
-                self.made.push((dims, *target, bank.clone()));
+                self.made.push((dims, target.clone(), bank.clone()));
                 bank
             }
         }

@@ -111,6 +111,55 @@ pub enum ConfigError {
         /// What to do.
         problem: &'static str,
     },
+    /// The values of a density are not one per pixel.
+    #[error("{given} values for a density of {width} by {height} pixels: give {expected}, row by row")]
+    DensityCount {
+        /// Values given.
+        given: usize,
+        /// Columns.
+        width: usize,
+        /// Rows.
+        height: usize,
+        /// Values expected.
+        expected: usize,
+    },
+    /// A value cannot be a density.
+    #[error("the density at column {x}, row {y} is {value}: give finite values of at least 0")]
+    BadDensity {
+        /// Column.
+        x: usize,
+        /// Row.
+        y: usize,
+        /// The value.
+        value: f64,
+    },
+    /// A density that is 0 everywhere: an all-black picture, where bright draws points.
+    #[error(
+        "the density is 0 in all of its {width} by {height} pixels, so that no point has a place: give at least one above 0 \
+         (a picture needs some ink, or the other tone)"
+    )]
+    NoDensity {
+        /// Columns.
+        width: usize,
+        /// Rows.
+        height: usize,
+    },
+    /// Densities of different sizes cannot be added.
+    #[error("a density has {given:?} columns and rows, another {expected:?}: bring all to the same size")]
+    OtherDensity {
+        /// Columns and rows.
+        given: [usize; 2],
+        /// Those of the first.
+        expected: [usize; 2],
+    },
+    /// A target's law along a direction is not a law.
+    #[error("the target of term {term} has no finite law along {direction:?}: correct its projection")]
+    BadLaw {
+        /// Position of the term.
+        term: usize,
+        /// The direction.
+        direction: Vec<f64>,
+    },
     /// A target cannot be projected on the dimensions of its term.
     #[error(
         "term {term}: the target has {target} dimensions, but the term sees {dims}: name as many dimensions"

@@ -129,5 +129,5 @@ pub use optimizer::{Config, Optimizer};
 pub use point_set::Subsets;
 pub use run::{Ended, RunReport, StepReport, Until, Work};
 pub use table::SampleTable;
-pub use target::{Projected, Target};
+pub use target::{CustomTarget, Density, Measure, PointCloud, Projected, Target};
 pub use term::{DimensionGroup, Role, Slicing, Term};
