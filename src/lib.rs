@@ -76,6 +76,7 @@
 //! [^korac]: Korać, Salaün, Georgiev, Grittmann, Slusallek, Myszkowski, Singh 2023, "Perceptual error optimization for Monte
 //!     Carlo animation rendering", SIGGRAPH Asia, <https://doi.org/10.1145/3610548.3618146>.
 
+mod atlas;
 mod atomic;
 mod bank;
 mod class;

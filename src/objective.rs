@@ -126,7 +126,15 @@ impl Objective {
         slicing.validate()?;
         let (mut planned, mut banks) = (Vec::new(), Banks::default());
         for (index, term) in terms.iter().enumerate() {
-            planned.push(PlannedTerm::new(index, term, extent, dims, slicing, wanted.clone(), &mut banks)?);
+            planned.push(PlannedTerm::new(
+                index,
+                term,
+                extent,
+                domains,
+                slicing,
+                wanted.clone(),
+                &mut banks,
+            )?);
         }
         share_work(&mut planned, extent, slicing);
         Ok(Self { extent, dims, domains: domains.to_vec(), terms: planned, wanted })

@@ -5,10 +5,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::bank::{Banks, Boundary};
 use crate::class::{Family, Wanted};
 use crate::direction::Slicer;
+use crate::domain::Domain;
 use crate::error::ConfigError;
 use crate::lanes::LONGEST;
 use crate::lattice::Extent;
 use crate::network::Network;
+use crate::target::Target;
 use crate::term::{Role, Slicing, Term};
 
 /// A term with its family of classes, its directions, and what sorting its subsets takes.
@@ -23,6 +25,9 @@ pub(crate) struct PlannedTerm {
     pub networks: Vec<Network>,
     /// Boundaries of the quantile cells, where laws are tabulated, for the most frequent sizes.
     pub grids: BTreeMap<usize, Vec<Boundary>>,
+    /// Per dimension, the square of the unit of distances along the slices in that of the coordinates; 1 but for pictures
+    /// that are not square.
+    pub stretch: Vec<f32>,
     /// Subsets drawn per step; need not be whole.
     pub rate: f64,
     /// Whether every step draws as many, so that a class sees its directions in even steps.
@@ -43,11 +48,12 @@ impl PlannedTerm {
         index: usize,
         term: &Term,
         extent: Extent,
-        dims: usize,
+        domains: &[Domain],
         slicing: &Slicing,
         wanted: Wanted,
         banks: &mut Banks,
     ) -> Result<Self, ConfigError> {
+        let dims = domains.len();
         if !(term.weight > 0.0 && term.weight.is_finite()) {
             let expected = "above 0 and finite";
             return Err(ConfigError::OutOfRange {
@@ -67,12 +73,23 @@ impl PlannedTerm {
                 return Err(ConfigError::RepeatedDimension { group: index, dimension });
             }
         }
+        if let Some(target) = term.target.dims()
+            && target != term.dims.len()
+        {
+            return Err(ConfigError::TargetDims { term: index, target, dims: term.dims.len() });
+        }
+        if term.target != Target::UniformCube
+            && let Some(&dimension) = term.dims.iter().find(|&&dim| domains[dim] == Domain::Torus)
+        {
+            return Err(ConfigError::TargetOnTorus { term: index, dimension });
+        }
         let family = Family::new(&term.classes, extent, wanted)?;
         let sizes = family.sizes();
         // A subset that is not sorted in lanes gains nothing from sharing its directions.
         let long = sizes[0] > LONGEST;
         let per_subset = if long { 1 } else { slicing.directions };
-        let slicer = Slicer::new(term.dims.len(), per_subset, slicing.axis_share, &term.target, banks);
+        let slicer =
+            Slicer::new(term.dims.len(), per_subset, slicing.axis_share, &term.target, banks, index)?;
         let in_lanes = !family.is_weighted() && slicer.per_subset() > 1;
         let sizes: BTreeSet<usize> = match sizes.last() {
             _ if !in_lanes => BTreeSet::new(),
@@ -87,6 +104,8 @@ impl PlannedTerm {
             Some(_) => sizes.into_iter().map(|n| (n, Boundary::grid(n).collect())).collect(),
             None => BTreeMap::new(),
         };
+        let scales = term.target.scales(term.dims.len());
+        let stretch = scales.iter().map(|scale| (1.0 / (scale * scale)) as f32).collect();
         Ok(Self {
             spec: term.clone(),
             family,
@@ -94,6 +113,7 @@ impl PlannedTerm {
             longest,
             networks,
             grids,
+            stretch,
             rate: 0.0,
             steady: false,
             pull: 1.0,

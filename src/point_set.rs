@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::class::{Classes, LabelSet, Lengths, PrefixOf};
 use crate::lattice::Extent;
 use crate::optimizer::Config;
-use crate::target::Target;
+use crate::target::{Density, Target};
 use crate::term::{Role, Term};
 
 /// Which sets of labels are classes of their own.
@@ -61,6 +61,11 @@ impl Config {
         let weighed = sets.into_iter().map(|set| LabelSet { weight: weight_of(size(&set)), labels: set });
         let classes = Classes::Labelled { labels: labels.clone(), subsets: weighed.collect() };
         Self::point_set(labels.len(), dims, vec![whole(classes, Target::UniformCube, dims)])
+    }
+
+    /// Stippling: as many points as are denser where the picture is.
+    pub fn stippling(count: usize, picture: Density) -> Self {
+        Self::point_set(count, 2, vec![whole(Classes::WholeTable, Target::Density(picture.into()), 2)])
     }
 
     /// A progressive sequence: the first 1, 2, 4, … points are uniform, and so are as many as `lengths` says.
