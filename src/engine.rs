@@ -322,4 +322,6 @@ fn add_up(objective: &Objective, chunks: &[Chunk], draws: &[Draw], per_chunk: us
 }
 
 #[cfg(test)]
+mod dispatch;
+#[cfg(test)]
 mod stress;

@@ -11,6 +11,8 @@ pub(crate) const SHARED: usize = 1 << 15;
 
 /// From this many samples on, a radix sort beats the comparisons of the standard library.
 const RADIX: usize = 256;
+/// Up to this many samples it also beats a sort shared between threads, and its positions leave room for a digit.
+const LARGEST_RADIX: usize = 1 << (u32::BITS - DIGIT);
 /// Bits of a digit of the radix sort, which takes two.
 const DIGIT: u32 = 11;
 
@@ -142,7 +144,7 @@ pub(crate) fn transport(
     }
     match n {
         0..RADIX => sort_few(projections, keys, order),
-        RADIX..SHARED => sort_digits(projections, law, (entries, starts), order),
+        RADIX..=LARGEST_RADIX => sort_digits(projections, law, (entries, starts), order),
         _ => sort_shared(projections, keys, order),
     }
     match weights {
@@ -201,7 +203,6 @@ fn sort_digits(
 ) {
     const DIGITS: u32 = 2 * DIGIT;
     const LOW: u32 = (1 << DIGIT) - 1;
-    const { assert!(SHARED <= 1 << (32 - DIGIT)) };
     let scale = (f64::from(1_u32 << DIGITS) / law.extent) as f32;
     let shift = (-law.lowest * f64::from(scale)) as f32;
     // A float becomes 0 rather than negative; rounding may exceed the last place.

@@ -18,12 +18,12 @@ pub(crate) enum Purpose {
     Strata,
     /// One subset: its level, directions and cut.
     Subset,
-    /// The order in which a sweep visits the samples.
-    Sweep,
     /// Fixed frames of directions.
     Frames,
     /// Slices that measure rather than optimise.
     Bound,
+    /// The order in which a sweep visits the samples.
+    Sweep,
     /// Parameters of one test integrand.
     Integrands = 32,
 }

@@ -1,12 +1,13 @@
 //! What each choice of the optimiser is worth: the defaults, and one thing changed at a time.
 //!
 //! ```text
-//! cargo bench --bench ablation                                    # some minutes; prints markdown
-//! cargo bench --bench ablation -- schedule --out docs --machine "AMD EPYC, 2 cores, 2026-11-22"
+//! cargo bench --bench ablation -- --out docs --machine "AMD EPYC, 2 cores, 2026-11-22"    # some minutes
+//! cargo bench --bench ablation -- schedule                                                # prints some of it
 //! ```
 //!
 //! Choices that don't change the cost of a slice are compared at equal slices, the others at equal time: that of the
-//! defaults. Tables are measured as in the README; all figures are ratios to white noise of the same shape.
+//! defaults, timed right before each. Tables are measured as in the README; all figures are ratios to white noise of the
+//! same shape.
 //!
 //! With `--test`, or outside `cargo bench`, everything runs once on small tables and is checked.
 
@@ -24,7 +25,7 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use clap::Parser;
-use factors::{Effort, Factor, Making};
+use factors::{Effort, Factor, Making, Variant};
 use fsot::{Config, Extent, Optimizer, SampleTable, Until};
 use mode::Mode;
 use quality::{Judge, Quality};
@@ -79,12 +80,13 @@ fn main() -> Result<(), Failure> {
     let (cases, plain_case) = if test { tiny() } else { full() };
     let wanted = |title: &str| arguments.filter.as_ref().is_none_or(|filter| title.contains(filter.as_str()));
 
-    let default = defaults(&cases)?;
-    let mut sections = vec![("Defaults", vec![Row { name: "defaults".into(), outcomes: default.clone() }])];
+    // Starts the threads.
+    rows(&cases[..1], vec![factors::defaults()])?;
+    let mut sections = vec![("Defaults", rows(&cases, vec![factors::defaults()])?)];
     for Factor { title, variants } in factors::all() {
         if wanted(title) {
             eprintln!("{title}");
-            sections.push((title, rows(&cases, &default, variants)?));
+            sections.push((title, rows(&cases, variants)?));
         }
     }
     let mut report = report::markdown(&arguments.machine, &cases, &sections);
@@ -133,33 +135,29 @@ fn tiny() -> ([Case; 2], Case) {
     (engine, plain)
 }
 
-fn defaults(cases: &[Case]) -> Result<Vec<Outcome>, Failure> {
-    let default = factors::defaults();
-    // The first run starts the threads and does not count.
-    cases.iter().map(|case| measure(case, &default, 0.0).and_then(|_| measure(case, &default, 0.0))).collect()
-}
-
-fn rows(cases: &[Case], default: &[Outcome], variants: Vec<factors::Variant>) -> Result<Vec<Row>, Failure> {
-    let row = |variant: factors::Variant| {
-        let outcomes = cases
-            .iter()
-            .zip(default)
-            .map(|(case, default)| measure(case, &variant, default.seconds))
-            .collect::<Result<_, _>>()?;
+fn rows(cases: &[Case], variants: Vec<Variant>) -> Result<Vec<Row>, Failure> {
+    let row = |variant: Variant| {
+        let outcomes = cases.iter().map(|case| measure(case, &variant)).collect::<Result<_, _>>()?;
         Ok(Row { name: variant.name, outcomes })
     };
     variants.into_iter().map(row).collect()
 }
 
-/// The mean over the seeds of a case; `seconds` is the time of the defaults.
-fn measure(case: &Case, variant: &factors::Variant, seconds: f64) -> Result<Outcome, Failure> {
+/// The mean over the seeds of a case.
+fn measure(case: &Case, variant: &Variant) -> Result<Outcome, Failure> {
     let judge = Judge::new(case.extent, case.integrands, case.bound_slices)?;
     let outcomes = (0..case.seeds).map(|seed| -> Result<Outcome, Failure> {
-        let mut config = Config { seed, ..Config::new(case.extent, 2) };
+        let default = Config { seed, ..Config::new(case.extent, 2) };
+        let mut config = default.clone();
         (variant.change)(&mut config);
+        let slices = Until::SlicesPerClass(case.slices_per_class);
         let until = match variant.effort {
-            Effort::Slices => Until::SlicesPerClass(case.slices_per_class),
-            Effort::Seconds => Until::Seconds(seconds.max(SHORTEST_SECONDS)),
+            Effort::Slices => slices,
+            // Timed again each time: other work on the machine comes and goes.
+            Effort::Seconds => {
+                let (_, _, seconds) = make(default, Making::Last, slices)?;
+                Until::Seconds(seconds.max(SHORTEST_SECONDS))
+            }
         };
         let (table, slices_per_class, seconds) = make(config, variant.making, until)?;
         Ok(Outcome { slices_per_class, seconds, quality: judge.judge(&table)? })

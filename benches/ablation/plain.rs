@@ -1,7 +1,7 @@
-//! Choices that the engine does not offer, on a plain loop in `f64`: what a sample moves towards, and how slices are drawn.
+//! Choices that the engine does not offer: what a sample moves towards, and how slices are drawn.
 //!
-//! The loop is the barycentric descent with the default schedule on the slices of [`Objective::draw`], one slice after
-//! the other.
+//! A plain loop in `f64`: the barycentric descent with the default schedule on the slices of [`Objective::draw`], one
+//! after the other.
 
 use std::fmt::Write;
 
@@ -35,7 +35,7 @@ enum Draws {
     Directions,
     /// Classes and levels, of subsets with sixteen directions each.
     Subsets,
-    /// All of them.
+    /// All of them: sixteen times as many subsets, with a direction each.
     Slices,
 }
 
@@ -46,7 +46,7 @@ const VARIANTS: [(&str, Targets, Draws); 7] = [
     ("n random points", Targets::Random(1), Draws::Stratified),
     ("independent directions", Targets::CellMeans, Draws::Directions),
     ("independent classes and levels", Targets::CellMeans, Draws::Subsets),
-    ("independent slices (as published)", Targets::CellMeans, Draws::Slices),
+    ("independent slices, each of its own subset (as published)", Targets::CellMeans, Draws::Slices),
 ];
 
 /// Measures all variants, and writes them as a section.

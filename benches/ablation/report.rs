@@ -21,13 +21,14 @@ fn write_all(
     writeln!(text, "Written by `cargo bench --bench ablation -- --out docs`; {machine}.\n")?;
     writeln!(
         text,
-        "One thing at a time is changed from the defaults. *Slices* are per pixel and frame; *filtered* error, *bound* \
-         and *bias* are ratios to white noise, as in the README."
+        "One thing at a time is changed from the defaults, at equal slices where that does not change the cost of a slice, \
+         else at equal time (that of the defaults, timed right before). *Slices* are per pixel and frame; *filtered* \
+         error, *bound* and *bias* are ratios to white noise, as in the README.\n"
     )?;
     for case in cases {
         writeln!(
             text,
-            "{}: {} slices, {}.",
+            "* {}: {} slices, {}",
             case.name,
             case.slices_per_class,
             if case.seeds == 1 { "one seed".into() } else { format!("mean of {} seeds", case.seeds) }

@@ -30,7 +30,7 @@ pub fn full(published_seconds: f64) -> Vec<Case> {
         Case {
             least_effort: 2,
             longest_seconds: 20.0,
-            published_seconds,
+            published_seconds: 2.0 * published_seconds,
             published_program_us: Some(175.0),
             ..animated("animated 64x64x10", 64, 10)
         },

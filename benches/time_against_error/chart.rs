@@ -87,11 +87,18 @@ fn place(frame: &Frame, Curve { points, .. }: &Curve, figure: fn(&Quality) -> f6
     points.iter().map(at).collect()
 }
 
-/// Moves labels that would overlap down, the lowest last.
+/// Moves labels that would overlap down, and those that would leave the frame up again.
 fn spread(labels: &mut [(i32, i32, &str, RGBColor)]) {
     labels.sort_unstable_by_key(|&(_, y, ..)| y);
-    for i in 1..labels.len() {
-        labels[i].1 = labels[i].1.max(labels[i - 1].1 + TEXT_PX);
+    let mut least = 0;
+    for (_, y, ..) in labels.iter_mut() {
+        *y = least.max(*y);
+        least = *y + TEXT_PX;
+    }
+    let mut most = PANEL.1 as i32 - BOTTOM as i32 - TEXT_PX / 2;
+    for (_, y, ..) in labels.iter_mut().rev() {
+        *y = most.min(*y);
+        most = *y - TEXT_PX;
     }
 }
 

@@ -42,7 +42,8 @@ pub fn print(Outcome { case, ours, published }: &Outcome) {
         last.quality.filtered, last.quality.bound, last.quality.bias
     );
     println!(
-        "| published loop: s | filtered | bound | bias | ours | s to its filtered error | speed-up | our bias | s to its bound | speed-up | our bias |"
+        "| published loop: s | filtered | bound | bias | ours | s to its filtered error | speed-up | our bias \
+         | s to its bound | speed-up | our bias |"
     );
     println!("|---|---|---|---|---|---|---|---|---|---|---|");
     let skipped = published.points.len().saturating_sub(CHECKPOINTS);

@@ -1,0 +1,56 @@
+//! Every instruction set gives the same bits.
+
+use super::*;
+use crate::domain::Domain;
+use crate::lattice::Extent;
+use crate::optimizer::Config;
+use crate::stream;
+use crate::term::Slicing;
+
+/// Samples, moves and squares of all slices of a step.
+fn transported<S: Simd>(
+    simd: S,
+    objective: &Objective,
+    points: &[f32],
+    role: Role,
+) -> (Vec<u32>, Vec<u32>, u64) {
+    let (mut orders, mut draws) = (Vec::new(), Vec::new());
+    let (mut chunk, mut scratch) = (Chunk::default(), Scratch::default());
+    objective.draw_subsets(1, 2, role, &mut orders, &mut draws);
+    let (draws, chunk_of, scratch) = (&draws, &mut chunk, &mut scratch);
+    simd.vectorize(Transport { objective, seed: 1, step: 2, points, draws, chunk: chunk_of, scratch });
+    let moves = chunk.moves.iter().map(|moved| moved.to_bits()).collect();
+    (chunk.samples, moves, chunk.squares.to_bits())
+}
+
+#[test]
+fn instruction_sets_agree() {
+    for (spp, dims) in [(1, 1), (1, 2), (4, 2), (1, 3), (2, 4), (1, 6)] {
+        let extent = Extent { frames: 2, height: 17, width: 13, spp };
+        for (directions, axis_share, domain) in
+            [(16, 0.0, Domain::Interval), (16, 0.3, Domain::Torus), (7, 0.0, Domain::Interval)]
+        {
+            let slicing = Slicing { directions, axis_share, batch_slices: Some(2000) };
+            let terms = Config::new(extent, dims).terms;
+            let objective = Objective::new(extent, dims, &vec![domain; dims], &terms, &slicing).unwrap();
+            let points = stream::uniforms(3, extent.samples() * dims);
+            for role in [Role::Descend, Role::Balance] {
+                let baseline = transported(pulp::Scalar, &objective, &points, role);
+                // A step may be none of the whole table's turns.
+                assert!(role == Role::Balance || !baseline.1.is_empty());
+                #[cfg(target_arch = "x86_64")]
+                {
+                    let avx2 = pulp::x86::V3::try_new();
+                    let avx512 = pulp::x86::V4::try_new();
+                    let case = format!("{spp} samples, {dims} dimensions, {directions} directions, {role:?}");
+                    if let Some(simd) = avx2 {
+                        assert!(transported(simd, &objective, &points, role) == baseline, "AVX2, {case}");
+                    }
+                    if let Some(simd) = avx512 {
+                        assert!(transported(simd, &objective, &points, role) == baseline, "AVX-512, {case}");
+                    }
+                }
+            }
+        }
+    }
+}
