@@ -15,8 +15,13 @@ fn main() {
         config.terms.retain(|t| t.dims.len() == 2);
     }
     let last = get("last", 0.4);
-    config.sweeps = Sweeps { rate: Schedule::geometric(get("first", 5.0), last), polish: Schedule::geometric(get("polish", 3.0), last), truncation: get("trunc", 0.02) };
-    config.descent = Descent::Barycentric { rate: Schedule::geometric(get("bfirst", 1.0), get("blast", 0.02)) };
+    config.sweeps = Sweeps {
+        rate: Schedule::geometric(get("first", 5.0), last),
+        polish: Schedule::geometric(get("polish", 3.0), last),
+        truncation: get("trunc", 0.02),
+    };
+    config.descent =
+        Descent::Barycentric { rate: Schedule::geometric(get("bfirst", 1.0), get("blast", 0.02)) };
     if get("adam", 0.0) > 0.0 {
         config.descent = Descent::adam();
     }

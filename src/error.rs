@@ -269,6 +269,29 @@ pub enum ConfigError {
     },
 }
 
+/// A picture that cannot serve as a density.
+#[cfg(feature = "render")]
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum PictureError {
+    /// The file cannot be read as a picture.
+    #[error("cannot read {}: {source}; give a PNG or EXR file", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What stands against it.
+        source: image::ImageError,
+    },
+    /// The picture is no density.
+    #[error("{}: {problem}", path.display())]
+    Density {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: ConfigError,
+    },
+}
+
 /// A table that cannot be made, read or written.
 #[derive(Debug, Error)]
 #[non_exhaustive]

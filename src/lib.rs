@@ -121,6 +121,8 @@ pub use cramer::Sweeps;
 pub use demand::Demand;
 pub use descent::{Descent, Schedule, Shape};
 pub use domain::{BELOW_ONE, Domain};
+#[cfg(feature = "render")]
+pub use error::PictureError;
 pub use error::{ConfigError, FormatError, TableError};
 pub use kernel::{Kernel, SpatialKernel, SpatialTap, Tap, TemporalKernel};
 pub use lattice::{Extent, Site};
@@ -131,4 +133,6 @@ pub use point_set::Subsets;
 pub use run::{Ended, RunReport, StepReport, Until, Work};
 pub use table::SampleTable;
 pub use target::{CustomTarget, Density, Measure, PointCloud, Projected, Target};
+#[cfg(feature = "render")]
+pub use target::{Inks, Tone};
 pub use term::{DimensionGroup, Role, Slicing, Term};

@@ -5,6 +5,8 @@ use std::sync::Arc;
 use crate::class::{Classes, LabelSet, Lengths, PrefixOf};
 use crate::lattice::Extent;
 use crate::optimizer::Config;
+#[cfg(feature = "render")]
+use crate::target::Inks;
 use crate::target::{Density, Target};
 use crate::term::{Role, Term};
 
@@ -66,6 +68,30 @@ impl Config {
     /// Stippling: as many points as are denser where the picture is.
     pub fn stippling(count: usize, picture: Density) -> Self {
         Self::point_set(count, 2, vec![whole(Classes::WholeTable, Target::Density(picture.into()), 2)])
+    }
+
+    /// Stippling in colour: points labelled 0 to 3 for cyan, magenta, yellow and black, as many of each as its share of the ink,
+    /// in this order. Each ink, and each of the up to 15 sets of inks, is to look like its part of the picture.
+    ///
+    /// [`Inks::counts`] says how many points each ink has.
+    #[cfg(feature = "render")]
+    pub fn color_stippling(count: usize, picture: &Inks) -> Self {
+        let counts = picture.counts(count);
+        let labels = labels(&counts);
+        let mut terms = Vec::new();
+        for set in Subsets::Every.list(counts.len()) {
+            let size: usize = set.iter().map(|&ink| counts[ink as usize]).sum();
+            // A set that holds an ink without points is the same as the set without it.
+            if set.iter().any(|&ink| counts[ink as usize] == 0) {
+                continue;
+            }
+            let Some(density) = picture.mixture(&set) else { continue };
+            let classes = Classes::labelled(labels.clone(), [set]);
+            // Terms share touches by weight, classes of different sizes unequally.
+            let weight = size as f64 * weight_of(size as f64);
+            terms.push(Term { weight, ..whole(classes, Target::Density(density), 2) });
+        }
+        Self::point_set(count, 2, terms)
     }
 
     /// A progressive sequence: the first 1, 2, 4, … points are uniform, and so are as many as `lengths` says.

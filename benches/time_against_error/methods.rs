@@ -32,7 +32,10 @@ pub const METHODS: &[Method] = &[
     Method { name: "SGD", run: |config, effort| slices(Descent::sgd(), config, effort) },
     Method { name: "Adam", run: |config, effort| slices(Descent::adam(), config, effort) },
     Method { name: "sweeps", run: |config, effort| work(config, 0, effort.sweeps) },
-    Method { name: "slices, then sweeps", run: |config, Effort { sweeps, .. }| work(config, 2 * sweeps, sweeps) },
+    Method {
+        name: "slices, then sweeps",
+        run: |config, Effort { sweeps, .. }| work(config, 2 * sweeps, sweeps),
+    },
 ];
 
 fn slices(descent: Descent, config: &Config, effort: Effort) -> Result<Made, ConfigError> {

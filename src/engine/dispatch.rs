@@ -16,7 +16,7 @@ fn transported<S: Simd>(
 ) -> (Vec<u32>, Vec<u32>, u64) {
     let (mut orders, mut draws) = (Vec::new(), Vec::new());
     let (mut chunk, mut scratch) = (Chunk::default(), Scratch::default());
-    objective.draw_subsets(1, 2, role, &mut orders, &mut draws);
+    objective.draw_subsets(1, 2, Pick::Batch(role), &mut orders, &mut draws);
     let (draws, chunk_of, scratch) = (&draws, &mut chunk, &mut scratch);
     simd.vectorize(Transport { objective, seed: 1, step: 2, points, draws, chunk: chunk_of, scratch });
     let moves = chunk.moves.iter().map(|moved| moved.to_bits()).collect();

@@ -10,6 +10,7 @@
 //! | what is the objective worth, with exact distances? | [`bound()`] |
 //! | does the table as a whole, a frame, a pixel estimate integrals too high or too low? | [`Bias`] |
 //! | are the samples spread evenly over the square? | [`Histogram`], [`l2_star_discrepancy`] |
+//! | what is the error of a prefix, of a class, of a point set? | [`set_error`] |
 //! | how far is a point set from its target? | [`sliced_w2`] |
 //! | at which frequencies is the error? | [`Spectra`] |
 //!
@@ -28,6 +29,7 @@ mod integrands;
 #[cfg(feature = "render")]
 mod picture;
 mod ratios;
+mod set_error;
 mod sliced;
 mod spectrum;
 mod uniformity;
@@ -43,6 +45,7 @@ pub use integrands::Integrand;
 #[cfg(feature = "render")]
 pub use picture::{gray, write_gray_png, write_radial_csv};
 pub use ratios::{Estimate, Ratios};
+pub use set_error::set_error;
 pub use sliced::sliced_w2;
 pub use spectrum::{RadialBin, Spectra};
 pub use uniformity::Histogram;

@@ -5,6 +5,8 @@ mod cloud;
 mod cube;
 mod custom;
 mod density;
+#[cfg(feature = "render")]
+mod picture;
 mod piece;
 mod pieces;
 mod projected;
@@ -18,6 +20,8 @@ use serde::{Deserialize, Serialize};
 pub use cloud::PointCloud;
 pub use custom::{CustomTarget, Measure};
 pub use density::Density;
+#[cfg(feature = "render")]
+pub use picture::{Inks, Tone};
 pub(crate) use pieces::Pieces;
 pub use projected::Projected;
 
