@@ -11,6 +11,7 @@
 //! | does the table as a whole, a frame, a pixel estimate integrals too high or too low? | [`Bias`] |
 //! | are the samples spread evenly over the square? | [`Histogram`], [`l2_star_discrepancy`] |
 //! | what is the error of a prefix, of a class, of a point set? | [`set_error`] |
+//! | do points follow a picture? | [`density_match`] |
 //! | how far is a point set from its target? | [`sliced_w2`] |
 //! | at which frequencies is the error? | [`Spectra`] |
 //!
@@ -20,6 +21,7 @@
 
 mod bias;
 mod bound;
+mod density_match;
 mod discrepancy;
 mod error_image;
 mod families;
@@ -37,6 +39,7 @@ mod volume;
 
 pub use bias::Bias;
 pub use bound::{Bound, bound};
+pub use density_match::{DensityMatch, density_match};
 pub use discrepancy::l2_star_discrepancy;
 pub use error_image::error_image;
 pub use families::{Family, Integrands};
