@@ -52,7 +52,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut optimizer = Optimizer::new(Config::point_set(1024, 2, vec![windows, whole]))?;
     optimizer.run(Until::SlicesPerClass(2000), |_| std::ops::ControlFlow::Continue(()))?;
     let (table, mut page) = (optimizer.into_table(), page::Page::new(1280, 440));
-    for (panel, (first, count)) in [(0, 128), (300, 128), (0, 1024)].into_iter().enumerate() {
+    for (panel, (first, count)) in [(0, 128), (320, 128), (0, 1024)].into_iter().enumerate() {
         let dots = table.values().chunks_exact(2).skip(first).take(count);
         page.scatter([20 + 420 * panel, 20], [400, 400], 3.0, dots.map(|dot| (dot, [20; 3])));
     }

@@ -24,7 +24,7 @@ struct Arguments {
     #[arg(long, value_enum, default_value_t = Prefixes::Powers)]
     prefixes: Prefixes,
     /// Slices per class.
-    #[arg(long, default_value_t = 4000)]
+    #[arg(long, default_value_t = 8000)]
     slices: u64,
     /// Sequences to average over.
     #[arg(long, default_value_t = 1)]

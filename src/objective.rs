@@ -304,6 +304,33 @@ impl Objective {
         }));
     }
 
+    /// Makes white noise noise of the targets: each sample is drawn from that of the smallest classes that hold it.
+    pub(crate) fn place(&self, points: &mut [f32]) {
+        let mut terms: Vec<&PlannedTerm> =
+            self.terms.iter().filter(|term| term.spec.role == Role::Descend).collect();
+        if terms.iter().all(|term| term.spec.target.warp().is_none()) {
+            return;
+        }
+        terms.sort_by(|a, b| b.family.mean_size().total_cmp(&a.family.mean_size()));
+        let noise = points.to_vec();
+        let mut samples = Vec::new();
+        for term in terms {
+            let Some(warp) = term.spec.target.warp() else { continue };
+            for index in 0..term.family.visited() {
+                term.family.select(term.family.visited_member(index), 0.0, &mut samples);
+                for &sample in &samples {
+                    let first = sample as usize * self.dims;
+                    let mut place: Vec<f64> =
+                        term.spec.dims.iter().map(|dim| f64::from(noise[first + dim])).collect();
+                    warp.place(&mut place);
+                    for (dim, place) in term.spec.dims.iter().zip(place) {
+                        points[first + dim] = Domain::Interval.admit(place as f32);
+                    }
+                }
+            }
+        }
+    }
+
     /// Factor on what the slices of a class pull.
     #[inline(always)]
     pub(crate) fn emphasis(&self, term: usize, member: usize) -> f64 {

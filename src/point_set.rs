@@ -95,11 +95,24 @@ impl Config {
     }
 
     /// A progressive sequence: the first 1, 2, 4, … points are uniform, and so are as many as `lengths` says.
+    ///
+    /// In two and more dimensions each coordinate alone is uniform as well, with a smaller weight.
     pub fn progressive(count: usize, dims: usize, lengths: Lengths) -> Self {
         let classes = Classes::Prefixes { of: PrefixOf::Table, lengths };
-        Self::point_set(count, dims, vec![whole(classes, Target::UniformCube, dims)])
+        let mut terms = vec![whole(classes.clone(), Target::UniformCube, dims)];
+        if dims > 1 {
+            terms.extend((0..dims).map(|dim| Term {
+                dims: vec![dim],
+                weight: MARGINAL,
+                ..whole(classes.clone(), Target::UniformCube, dims)
+            }));
+        }
+        Self::point_set(count, dims, terms)
     }
 }
+
+/// Weight of a single coordinate in a progressive sequence.
+const MARGINAL: f64 = 0.15;
 
 /// `counts[0]` times 0, `counts[1]` times 1, and so on.
 pub(crate) fn labels(counts: &[usize]) -> Arc<[u32]> {

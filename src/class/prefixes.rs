@@ -54,8 +54,8 @@ impl Prefixes {
             PrefixOf::Table => extent.samples(),
             PrefixOf::Pixel => extent.spp,
         };
-        // Displacements fall with the length as n^(-3/4) at best: a weight of n^(1/2) makes n times their squares equal.
-        let weighed = |length: usize| PrefixLength { length, weight: (length as f64).sqrt() };
+        // The first samples are in all prefixes: the short ones decide about them, and the later samples follow.
+        let weighed = |length: usize| PrefixLength { length, weight: 1.0 / length as f64 };
         let lengths = match lengths {
             Lengths::Every => (1..=block).map(weighed).collect(),
             Lengths::PowersOfTwo => {

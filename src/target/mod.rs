@@ -12,6 +12,7 @@ mod pieces;
 mod projected;
 #[cfg(test)]
 mod tests;
+mod warp;
 
 use std::sync::Arc;
 
