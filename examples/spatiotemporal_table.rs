@@ -60,7 +60,7 @@ struct Arguments {
     /// Slices drawn per pixel and frame [default: 320 with --domain torus or --optimizer, 0 otherwise].
     #[arg(long, conflicts_with = "seconds")]
     slices_per_class: Option<u64>,
-    /// Sweeps over all samples, after the slices; impossible with --domain torus [default: 100 if there are no slices].
+    /// Sweeps over all samples, after the slices; not with --domain torus [default: 100 if there are no slices, else 0].
     #[arg(long, conflicts_with = "seconds")]
     sweeps: Option<u64>,
     /// Time for the optimisation alone, instead of an amount of work.
@@ -188,17 +188,13 @@ fn optimize(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn until(arguments: &Arguments) -> Until {
-    let Arguments { seconds, slices_per_class, sweeps, optimizer, domain, .. } = arguments;
-    match (seconds, slices_per_class, sweeps) {
-        (Some(seconds), ..) => Until::Seconds(*seconds),
-        (None, None, None) if optimizer.is_some() || matches!(domain, DomainName::Torus) => {
-            Until::SlicesPerClass(320)
-        }
-        (None, None, None) => Until::Sweeps(100),
-        _ => {
-            Until::Work(Work { slices_per_class: slices_per_class.unwrap_or(0), sweeps: sweeps.unwrap_or(0) })
-        }
+    if let Some(seconds) = arguments.seconds {
+        return Until::Seconds(seconds);
     }
+    let slices_only = arguments.optimizer.is_some() || matches!(arguments.domain, DomainName::Torus);
+    let slices_per_class = arguments.slices_per_class.unwrap_or(if slices_only { 320 } else { 0 });
+    let sweeps = arguments.sweeps.unwrap_or(if slices_per_class > 0 { 0 } else { 100 });
+    Until::Work(Work { slices_per_class, sweeps })
 }
 
 fn config(arguments: &Arguments) -> Config {

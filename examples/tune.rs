@@ -14,14 +14,14 @@ fn main() {
     if get("nogroup", 0.0) > 0.0 {
         config.terms.retain(|t| t.dims.len() == 2);
     }
-    let last = get("last", 0.4);
+    let last = get("last", 0.17);
     config.sweeps = Sweeps {
-        rate: Schedule::geometric(get("first", 5.0), last),
-        polish: Schedule::geometric(get("polish", 3.0), last),
+        rate: Schedule::geometric(get("first", 2.2), last),
+        polish: Schedule::geometric(get("polish", 1.3), last),
         truncation: get("trunc", 0.02),
     };
     config.descent =
-        Descent::Barycentric { rate: Schedule::geometric(get("bfirst", 1.0), get("blast", 0.02)) };
+        Descent::Barycentric { rate: Schedule::geometric(get("bfirst", 2.0), get("blast", 0.03)) };
     if get("adam", 0.0) > 0.0 {
         config.descent = Descent::adam();
     }
@@ -37,7 +37,7 @@ fn main() {
     let mut split = 0.0;
     let report = opt
         .run(until, |s| {
-            if s.rate >= get("first", 5.0) && split == 0.0 {
+            if s.rate >= get("first", 2.2) && split == 0.0 {
                 split = s.elapsed.as_secs_f64();
             }
             std::ops::ControlFlow::Continue(())

@@ -1,8 +1,8 @@
 //! One step's slices, in parallel, summed in a fixed order.
 //!
-//! The subsets of a step are cut into chunks of fixed size; workers transport them into buffers of their own, and
-//! the displacements are then added to the samples one chunk after the other. No result depends on how many
-//! threads there are. Buffers are reused from step to step.
+//! The subsets of a step are cut into chunks of fixed size; workers transport them into buffers of their own. Then each
+//! worker adds up the displacements of its part of the table, chunk after chunk in the order of the draws, so that no
+//! result depends on how many threads there are. Buffers are reused from step to step.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -56,7 +56,6 @@ struct Scratch {
 }
 
 /// What the subsets of a chunk pull, in the order of the draws.
-
 #[derive(Default)]
 struct Chunk {
     samples: Vec<u32>,
@@ -101,6 +100,8 @@ impl Engine {
             let (draws, chunk) = (std::slice::from_ref(draw), &mut chunks[0]);
             arch.dispatch(Transport { objective, seed, step, points, draws, chunk, scratch: large });
             add_up(objective, std::slice::from_ref(chunk), draws, 1, pull);
+            // The list of all samples stays one.
+            std::mem::swap(&mut chunk.samples, &mut large.subset);
         }
         draws.retain(|draw| !is_large(draw));
         // Fewer large subsets at a time, so that memory is bounded by samples and not by slices times samples.
@@ -156,7 +157,11 @@ impl WithSimd for Transport<'_> {
             term.family.select(draw.member as usize, draw.level, &mut scratch.subset);
             term.family.weigh(draw.member as usize, &mut scratch.weights);
             chunk.transport(simd, objective, term, points, scratch);
-            chunk.samples.extend_from_slice(&scratch.subset);
+            if chunk.samples.is_empty() {
+                std::mem::swap(&mut chunk.samples, &mut scratch.subset);
+            } else {
+                chunk.samples.extend_from_slice(&scratch.subset);
+            }
             chunk.ends.push(chunk.samples.len());
         }
     }

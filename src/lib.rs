@@ -11,7 +11,7 @@
 //!
 //! let extent = Extent { frames: 1, height: 32, width: 32, spp: 1 };
 //! let mut optimizer = Optimizer::new(Config::new(extent, 2))?;
-//! optimizer.run(Until::SlicesPerClass(64), |_progress| ControlFlow::Continue(()))?;
+//! optimizer.run(Until::Seconds(0.05), |_progress| ControlFlow::Continue(()))?;
 //! let bound = metrics::bound(optimizer.objective(), &optimizer.table(), 0, 4096)?;
 //! assert!(bound.total.ratio_to_white_noise < 0.75);
 //!
@@ -36,6 +36,15 @@
 //! bounds the filtered error of every Lipschitz integrand from above. [`Optimizer`] descends it with a batch of random
 //! slices `(p, z, theta)` per step; [`metrics::bound()`] measures it with exact distances;
 //! [`Objective::value_and_gradient`] hands it to an optimiser of your own.
+//!
+//! # All slices at once
+//!
+//! With Cramér's distance in place of Wasserstein's, and weights in place of levels, the mean over *all* directions has a
+//! closed form, the energy distance: see [`Objective::cramer`]. It is the squared filtered error of random half-spaces,
+//! and its exact gradient needs no sorting and no random numbers. A *sweep* ([`Optimizer::sweep`]) moves every sample along
+//! it once. Sweeps are the sooner at any filtered error; slices reach the lower bound, and hold where there is no closed
+//! form (on a torus). [`Until::Seconds`] chooses: sweeps alone if time is short, slices and then sweeps if there is more,
+//! slices alone where sweeps are impossible.
 //!
 //! | symbol | here | shape, unit |
 //! |---|---|---|
@@ -64,7 +73,8 @@
 //!   platforms sines, cosines and powers of the standard library may round differently in the last bit, and a run
 //!   amplifies that; tables then differ, their quality doesn't.
 //! * Values lie in `[0, 1)`; 1.0 never appears.
-//! * Steps reuse their buffers; memory stays below a dozen times the table, plus a few MiB.
+//! * Steps reuse their buffers; memory stays below a dozen times the table, plus a few MiB. (Sweeps of tiles narrower than
+//!   16 pixels take up to 16 times the table instead: their rows are filled up.)
 //! * Bad input is refused with a typed error ([`ConfigError`], [`TableError`]) before anything is computed or written.
 //!   The library prints nothing.
 //!

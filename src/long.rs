@@ -27,7 +27,6 @@ pub(crate) struct LongBuffers {
     /// Positions by increasing projection.
     order: Vec<u32>,
     starts: Vec<[u32; 1 << DIGIT]>,
-    means: Vec<f64>,
 }
 
 /// Law of the projection on one direction.
@@ -79,24 +78,36 @@ impl LongShape<'_> {
 }
 
 impl LongLaw<'_> {
-    /// Writes the means of the quantile function over equal cells.
-    fn cell_means(&self, means: &mut [f64]) {
+    /// Visits `n` equal cells, from both ends to the middle, with the means of the quantile function over them.
+    #[inline(always)]
+    fn for_each_cell(&self, n: usize, mut visit: impl FnMut(usize, f64)) {
         let &LongLaw { lowest, extent, ref shape } = self;
         if let LongShape::Pieces(pieces) = shape {
-            return pieces.cell_means_into(means);
+            return pieces.for_each_cell(n, visit);
         }
-        let n = means.len();
         let cells = n as f64;
         let mut below = 0.0;
         for cell in 0..n / 2 {
             let integral = shape.integral((cell + 1) as f64 / cells);
             let above = (integral - below) * cells;
-            means[cell] = lowest + above;
-            means[n - 1 - cell] = lowest + (extent - above);
+            visit(cell, lowest + above);
+            visit(n - 1 - cell, lowest + (extent - above));
             below = integral;
         }
         if n % 2 == 1 {
-            means[n / 2] = lowest + 0.5 * extent;
+            visit(n / 2, lowest + 0.5 * extent);
+        }
+    }
+
+    /// The same for cells in proportion to the weights of the samples in `order`, one after the other.
+    fn for_each_weighted_cell(&self, weights: &[f64], order: &[u32], mut visit: impl FnMut(usize, f64)) {
+        let total: f64 = weights.iter().sum();
+        let (mut below, mut lower) = (0.0, 0.0);
+        for (rank, &position) in order.iter().enumerate() {
+            below += weights[position as usize];
+            let upper = (below / total).min(1.0);
+            visit(rank, self.cell_mean(lower, upper));
+            lower = upper;
         }
     }
 
@@ -130,13 +141,13 @@ pub(crate) fn transport(
 ) -> f64 {
     let (n, dims) = (subset.samples.len(), subset.dims.len());
     let project = |j: usize| (0..dims).map(|dim| subset.coordinate(j, dim) * theta(dim)).sum::<f32>();
-    let LongBuffers { projections, keys, entries, order, starts, means } = buffers;
-    for (buffer, least) in [(&mut *entries, RADIX), (order, 0)] {
-        buffer.resize(if n >= least { n } else { 0 }.max(buffer.len()), 0);
+    let LongBuffers { projections, keys, entries, order, starts } = buffers;
+    if (RADIX..=LARGEST_RADIX).contains(&n) {
+        entries.resize(n.max(entries.len()), 0);
     }
+    order.resize(n.max(order.len()), 0);
     projections.resize(n.max(projections.len()), 0.0);
-    means.resize(n.max(means.len()), 0.0);
-    let (projections, order, means) = (&mut projections[..n], &mut order[..n], &mut means[..n]);
+    let (projections, order) = (&mut projections[..n], &mut order[..n]);
     if n >= SHARED {
         projections.par_iter_mut().enumerate().with_min_len(1 << 12).for_each(|(j, to)| *to = project(j));
     } else {
@@ -147,22 +158,9 @@ pub(crate) fn transport(
         RADIX..=LARGEST_RADIX => sort_digits(projections, law, (entries, starts), order),
         _ => sort_shared(projections, keys, order),
     }
-    match weights {
-        None => law.cell_means(means),
-        Some(weights) => {
-            let total: f64 = weights.iter().sum();
-            let (mut below, mut lower) = (0.0, 0.0);
-            for (mean, &position) in means.iter_mut().zip(&*order) {
-                below += weights[position as usize];
-                let upper = (below / total).min(1.0);
-                *mean = law.cell_mean(lower, upper);
-                lower = upper;
-            }
-        }
-    }
     let mut squares = 0.0;
-    for (&mean, &position) in means.iter().zip(&*order) {
-        let position = position as usize;
+    let displace = |rank: usize, mean: f64| {
+        let position = order[rank] as usize;
         let mass = weights.map_or(1.0, |weights| weights[position]);
         let displacement = mean - f64::from(projections[position]);
         squares += mass * displacement * displacement;
@@ -170,6 +168,10 @@ pub(crate) fn transport(
         for (dim, along) in moves[position * dims..][..dims].iter_mut().enumerate() {
             *along += moved * theta(dim);
         }
+    };
+    match weights {
+        None => law.for_each_cell(n, displace),
+        Some(weights) => law.for_each_weighted_cell(weights, order, displace),
     }
     squares
 }

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 
 use crate::class::Form;
-use crate::cramer::{self, Sweeper, Sweeps};
+use crate::cramer::{self, MeanSquare, Sweeper, Sweeps};
 use crate::demand::Demand;
 use crate::descent::{self, Descent, Schedule, Walker};
 use crate::domain::Domain;
@@ -37,6 +37,7 @@ pub struct Config {
     /// How steps of slices move the samples.
     pub descent: Descent,
     /// How sweeps move them.
+    #[serde(default)]
     pub sweeps: Sweeps,
     /// How far the terms in the role of [`Role::Balance`] move the samples towards their targets, over a run.
     pub balance: Schedule,
@@ -47,7 +48,7 @@ pub struct Config {
 impl Config {
     /// The defaults for a table of this extent: interval domains, the spatial Gaussian of the papers (`sigma_px =
     /// 2.1`), times the perceptual kernel at 60 frames per second if there are several frames, consecutive pairs of
-    /// dimensions and all of them at half their weight, unbiased, barycentric steps.
+    /// dimensions and all of them at half their weight, unbiased, barycentric steps of slices.
     pub fn new(extent: Extent, dims: usize) -> Self {
         let temporal = match extent.frames {
             0 | 1 => TemporalKernel::None,
@@ -173,7 +174,6 @@ impl Optimizer {
     ///
     /// For schedules of your own; [`Optimizer::run`] follows those of the configuration.
     pub fn step(&mut self, rate: f64, balance: f64) -> (f64, u64) {
-        // On a thread of the pool from here on, instead of going there and back for each of the loops.
         rayon::scope(|_| self.step_in_pool(rate, balance))
     }
 
@@ -200,19 +200,19 @@ impl Optimizer {
     /// # Errors
     /// A descended term that has no closed form ([`ConfigError::NotInClosedForm`]).
     pub fn sweep(&mut self, rate: f64, balance: f64) -> Result<f64, ConfigError> {
-        let mut squares = 0.0;
+        rayon::scope(|_| self.sweep_in_pool(rate, balance))
+    }
+
+    fn sweep_in_pool(&mut self, rate: f64, balance: f64) -> Result<f64, ConfigError> {
+        let mut pulls = MeanSquare::default();
         for step in 0..cramer::STEPS {
-            squares += self.sweep_step(step, rate, balance)?;
+            pulls += self.sweep_step(step, rate, balance)?;
         }
-        Ok((squares / cramer::STEPS as f64).sqrt())
+        Ok(pulls.root())
     }
 
-    /// One step of a sweep. Returns the mean square pull.
-    fn sweep_step(&mut self, step: usize, rate: f64, balance: f64) -> Result<f64, ConfigError> {
-        rayon::scope(|_| self.sweep_step_in_pool(step, rate, balance))
-    }
-
-    fn sweep_step_in_pool(&mut self, step: usize, rate: f64, balance: f64) -> Result<f64, ConfigError> {
+    /// One step of a sweep. Returns what it pulled.
+    fn sweep_step(&mut self, step: usize, rate: f64, balance: f64) -> Result<MeanSquare, ConfigError> {
         let Self { engine, objective, config, points, pull, sweeper, swept, .. } = self;
         let Config { domains, seed, sweeps, .. } = config;
         let sweeper = match sweeper {
@@ -220,22 +220,23 @@ impl Optimizer {
             none => none.insert(Sweeper::new(objective, sweeps)?),
         };
         if step == 0 {
-            sweeper.load(points);
             sweeper.shuffle(*seed, *swept);
+            // Also one that is broken off is not repeated.
+            *swept += 1;
         }
-        let squares = sweeper.step(step, rate, domains, points);
+        if step % (cramer::STEPS / BALANCES) == 0 {
+            // What has moved the table since: a balance, slices, a caller.
+            sweeper.load(points);
+        }
+        let pulls = sweeper.step(step, rate, domains, points);
         if (step + 1) % (cramer::STEPS / BALANCES) == 0 {
             let turn = *swept * BALANCES as u64 + (step / (cramer::STEPS / BALANCES)) as u64;
             engine.pull(objective, (*seed, turn, Pick::Each(Role::Balance)), points, pull);
             if pull.slices > 0 {
                 descent::project(balance, domains, points, pull);
-                sweeper.load(points);
             }
         }
-        if step + 1 == cramer::STEPS {
-            *swept += 1;
-        }
-        Ok(squares)
+        Ok(pulls)
     }
 
     /// Takes steps until `until`, or until `observe` breaks off. The table keeps what was reached.
@@ -247,6 +248,15 @@ impl Optimizer {
     /// A number of seconds or an improvement outside its range; sweeps of an objective that has no closed form. Nothing is
     /// changed then.
     pub fn run(
+        &mut self,
+        until: Until,
+        observe: impl FnMut(&StepReport) -> ControlFlow<()> + Send,
+    ) -> Result<RunReport, ConfigError> {
+        // On a thread of the pool from here on, instead of going there and back for each step.
+        rayon::scope(|_| self.run_in_pool(until, observe))
+    }
+
+    fn run_in_pool(
         &mut self,
         until: Until,
         mut observe: impl FnMut(&StepReport) -> ControlFlow<()>,
@@ -264,14 +274,14 @@ impl Optimizer {
             let (displacement, rate) = if step < batches {
                 let progress = step as f64 / batches as f64;
                 let rate = self.config.descent.rate().at(progress);
-                let (displacement, slices) = self.step(rate, self.config.balance.at(progress));
+                let (displacement, slices) = self.step_in_pool(rate, self.config.balance.at(progress));
                 report.slices += slices;
                 (displacement, rate)
             } else {
                 let progress = (step - batches) as f64 / (steps - batches) as f64;
                 let rate = self.config.sweeps.of_a_run(work).at(progress);
                 let part = (step - batches) as usize % cramer::STEPS;
-                (self.sweep_step(part, rate, self.config.balance.at(progress))?.sqrt(), rate)
+                (self.sweep_step(part, rate, self.config.balance.at(progress))?.root(), rate)
             };
             report.steps += 1;
             let elapsed = begin.elapsed();
@@ -340,26 +350,22 @@ impl Optimizer {
     fn seconds_per_batch(&mut self) -> f64 {
         let steps = self.steps;
         // The first step grows the buffers and does not count.
-        self.step(0.0, 0.0);
+        self.step_in_pool(0.0, 0.0);
         let seconds = mean_seconds(|| {
-            self.step(0.0, 0.0);
+            self.step_in_pool(0.0, 0.0);
         });
         self.steps = steps;
         seconds
     }
 
-    /// Times a few sixteenths of a sweep that leave the table as it is.
+    /// Times a few sweeps that leave the table as it is.
     fn seconds_per_sweep(&mut self) -> Result<f64, ConfigError> {
         let swept = self.swept;
         self.sweep_step(0, 0.0, 0.0)?;
-        let mut step = 0;
         let mut outcome = Ok(0.0);
-        let seconds = mean_seconds(|| {
-            outcome = self.sweep_step(step, 0.0, 0.0);
-            step = (step + 1) % cramer::STEPS;
-        });
+        let seconds = mean_seconds(|| outcome = self.sweep_in_pool(0.0, 0.0));
         self.swept = swept;
-        outcome.map(|_| seconds * cramer::STEPS as f64)
+        outcome.map(|_| seconds)
     }
 }
 
@@ -369,13 +375,22 @@ const BALANCES: usize = 2;
 /// Slices per pixel and frame from which on it is worth beginning with them.
 const ENOUGH_SLICES: f64 = 64.0;
 
-/// Mean time of a call, over as many as make a reliable figure.
+/// Mean time of a call, over as many as make a reliable figure: the median of three windows, since other work may share
+/// the machine.
 fn mean_seconds(mut call: impl FnMut()) -> f64 {
-    const ENOUGH: Duration = Duration::from_millis(15);
-    let (begin, mut timed) = (Instant::now(), 0);
-    while begin.elapsed() < ENOUGH {
-        call();
-        timed += 1;
+    const WINDOW: Duration = Duration::from_millis(8);
+    let mut means = Vec::with_capacity(3);
+    while means.len() < 3 {
+        let (begin, mut timed) = (Instant::now(), 0);
+        while begin.elapsed() < WINDOW {
+            call();
+            timed += 1;
+        }
+        means.push(begin.elapsed().as_secs_f64() / f64::from(timed));
+        if means[0] > 0.1 {
+            break; // long enough not to be disturbed
+        }
     }
-    begin.elapsed().as_secs_f64() / f64::from(timed)
+    means.sort_unstable_by(f64::total_cmp);
+    means[means.len() / 2]
 }

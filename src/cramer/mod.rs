@@ -23,7 +23,7 @@ mod sweep;
 
 pub(crate) use exact::value_and_gradient;
 pub use sweep::Sweeps;
-pub(crate) use sweep::{STEPS, Sweeper};
+pub(crate) use sweep::{MeanSquare, STEPS, Sweeper};
 
 use crate::domain::Domain;
 use crate::error::ConfigError;

@@ -1,5 +1,6 @@
 //! The gradient of one term at one run of samples: a pass over the pairs that some filter holds together.
 
+use std::f64::consts::PI;
 use std::ops::Range;
 
 use super::correlation::autocorrelation;
@@ -20,6 +21,8 @@ pub(super) struct Pairs {
     reach: usize,
     /// `Σ_j F_ij`, the same for every sample of a table that is demanded whole.
     total: f32,
+    /// `Σ_j F_ij / F_ii`: the number of neighbours, each as much as it is held together.
+    crowd: f64,
     field: FieldTable,
 }
 
@@ -65,8 +68,16 @@ impl Pairs {
             taps: taps.iter().map(row_tap).collect(),
             reach,
             total: (total * extent.spp as f64) as f32,
+            crowd: total * extent.spp as f64 / taps.iter().map(|tap| tap.weight).fold(0.0, f64::max),
             field: FieldTable::new(term.spec.dims.len()),
         }
+    }
+
+    /// How far a unit of the pull should move a sample: `n r`, see [`super::Sweeps`].
+    pub(super) fn natural_step(&self) -> f64 {
+        let dims = self.dims.len() as f64;
+        let ball = PI.powf(0.5 * dims) / libm::tgamma(0.5 * dims + 1.0);
+        self.crowd * (ball * self.crowd).powf(-1.0 / dims)
     }
 
     pub(super) fn reach(&self) -> usize {
@@ -89,6 +100,7 @@ impl Pairs {
             2 => self.add::<2>(2, planes, margin, run, factors, pulls),
             3 => self.add::<3>(3, planes, margin, run, factors, pulls),
             4 => self.add::<4>(4, planes, margin, run, factors, pulls),
+            dims @ 5..=8 => self.add::<8>(dims, planes, margin, run, factors, pulls),
             dims => self.add::<MOST_DIMS>(dims, planes, margin, run, factors, pulls),
         }
     }

@@ -1,11 +1,12 @@
 //! Sweeps: every sample once, in random order, moved along the gradient of the closed form.
 
+use std::ops::{AddAssign, Range};
+
 use pulp::{Arch, NullaryFnOnce};
 use rand::seq::SliceRandom;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::mean_projection;
 use super::pairs::Pairs;
 use super::planes::{Planes, Run};
 use crate::descent::Schedule;
@@ -17,15 +18,19 @@ use crate::run::Work;
 use crate::stream::{self, Purpose};
 use crate::term::Role;
 
-/// Steps per sweep: the samples of a step move together, so that they had better not be neighbours.
+/// Steps per sweep. The samples of a step move together, as if the others of that step stood still; with few of them next
+/// to each other, large steps are safe.
 pub(crate) const STEPS: usize = 16;
 
-/// How sweeps move the samples: `x ← x + rate · pull`, where the pull on a sample is the mean unit vector away from its
-/// neighbours less that away from a uniform point, times `d c_d` in a group of `d` dimensions (1.27 in the plane).
+/// How sweeps move the samples: `x ← x + rate · pull`.
+///
+/// The pull is the negative gradient of [`crate::Objective::cramer`], brought to the scale where the natural step is 1: around a
+/// sample that sits well among its `n` neighbours there is room of a radius `r` with `V_d r^d n = 1` in the unit cube of
+/// `d` dimensions, and the curvature there is one sample's share of the gradient, per `r`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sweeps {
-    /// Step size of a run of sweeps alone. One of `n` sweeps doesn't go below the first value divided by `n`: there is no
-    /// time for more.
+    /// Step size of a run of sweeps alone. One of `n` sweeps begins no higher than at `√n`, and ends no lower than at its
+    /// beginning divided by `n`: few sweeps can neither mend what large steps break nor settle.
     pub rate: Schedule,
     /// Step size of sweeps that follow slices in a run. Larger ones would undo what the slices have arranged.
     pub polish: Schedule,
@@ -35,7 +40,7 @@ pub struct Sweeps {
 
 impl Default for Sweeps {
     fn default() -> Self {
-        let [rate, polish] = [5.0, 3.0].map(|first| Schedule::geometric(first, 0.4));
+        let [rate, polish] = [2.2, 1.3].map(|first| Schedule::geometric(first, 0.17));
         Self { rate, polish, truncation: 0.02 }
     }
 }
@@ -47,7 +52,9 @@ impl Sweeps {
             return self.polish;
         }
         let Schedule { first, last, shape } = self.rate;
-        Schedule { first, last: last.max(first / work.sweeps.max(1) as f64), shape }
+        let sweeps = work.sweeps.max(1) as f64;
+        let first = first.min(sweeps.sqrt());
+        Schedule { first, last: last.max(first / sweeps), shape }
     }
 
     pub(crate) fn validate(&self) -> Result<(), ConfigError> {
@@ -89,15 +96,13 @@ impl Sweeper {
         let (extent, dims) = (objective.extent, objective.dims);
         let planned = || objective.terms.iter().filter(|term| term.spec.role == Role::Descend);
         let terms: Vec<Pairs> = planned().map(|term| Pairs::new(term, extent, sweeps.truncation)).collect();
-        // A slice's pull is its group's number of dimensions times its mean displacement, a coordinate's pull the mean
-        // over the terms that see it by weight. So it is here, where directions are meant already.
+        // A coordinate's pull is the mean over the terms that see it, by weight.
         let mut seen = vec![0.0; dims];
         for term in planned() {
             term.spec.dims.iter().for_each(|&dim| seen[dim] += term.spec.weight);
         }
-        let factors = planned().map(|term| {
-            let count = term.spec.dims.len();
-            let strength = term.spec.weight * count as f64 * mean_projection(count);
+        let factors = planned().zip(&terms).map(|(term, pairs)| {
+            let strength = term.spec.weight * pairs.natural_step();
             term.spec.dims.iter().map(|&dim| (strength / seen[dim]) as f32).collect()
         });
         let factors = factors.collect();
@@ -121,27 +126,30 @@ impl Sweeper {
         self.order.sort_unstable();
         self.order.shuffle(&mut stream::generator(seed, Purpose::Sweep, sweep, 0));
         // Within a step the order doesn't matter, and neighbours share rows.
-        let size = self.step_size();
-        self.order.chunks_mut(size).for_each(<[u32]>::sort_unstable);
+        for step in 0..STEPS {
+            let part = part(self.order.len(), step);
+            self.order[part].sort_unstable();
+        }
     }
 
-    fn step_size(&self) -> usize {
-        self.order.len().div_ceil(STEPS).max(1)
-    }
-
-    /// Moves the samples of one step of the sweep by `rate` times their pull. Returns the mean square of the pull.
-    pub(crate) fn step(&mut self, step: usize, rate: f64, domains: &[Domain], points: &mut [f32]) -> f64 {
-        let size = self.step_size();
+    /// Moves the samples of one step of the sweep by `rate` times their pull. Returns the pulls' mean square.
+    pub(crate) fn step(
+        &mut self,
+        step: usize,
+        rate: f64,
+        domains: &[Domain],
+        points: &mut [f32],
+    ) -> MeanSquare {
         let Self { arch, terms, factors, margin, planes, dims, order, pulls } = self;
         let (dims, margin) = (*dims, *margin);
-        let Some(runs) = order.chunks(size).nth(step) else { return 0.0 };
-        pulls.resize(size * dims, [0.0; LANES]);
+        let runs = &order[part(order.len(), step)];
+        pulls.resize(runs.len() * dims, [0.0; LANES]);
         let tasks = pulls.par_chunks_exact_mut(dims).zip(runs);
         tasks.with_min_len(RUNS_PER_TASK).for_each(|(pulls, &run)| {
             let run = planes.run(run as usize);
             arch.dispatch(PullOfRun { terms, factors, planes, margin, run, pulls });
         });
-        let (mut squares, mut moved) = (0.0, 0);
+        let mut all = MeanSquare::default();
         for (pulls, &run) in pulls.chunks_exact(dims).zip(runs) {
             let run = planes.run(run as usize);
             for lane in 0..planes.len(run) {
@@ -151,20 +159,20 @@ impl Sweeper {
                 let first = planes.first(run, lane);
                 let point = &mut points[first..first + dims];
                 for ((value, pull), domain) in point.iter_mut().zip(pulls).zip(domains) {
-                    squares += f64::from(pull[lane] * pull[lane]);
+                    all.sum += f64::from(pull[lane] * pull[lane]);
                     *value = domain.admit(*value + rate as f32 * pull[lane]);
                 }
-                moved += 1;
+                all.count += dims;
                 planes.set(run, lane, point);
             }
         }
-        squares / (moved * dims).max(1) as f64
+        all
     }
 
     /// The pulls of a step that was just taken, by coordinate.
     #[cfg(test)]
     pub(super) fn each_pull(&self, step: usize, mut visit: impl FnMut(usize, f32)) {
-        let runs = self.order.chunks(self.step_size()).nth(step).unwrap_or_default();
+        let runs = &self.order[part(self.order.len(), step)];
         for (pulls, &run) in self.pulls.chunks_exact(self.dims).zip(runs) {
             let run = self.planes.run(run as usize);
             for lane in (0..self.planes.len(run)).filter(|&lane| self.planes.wants(run, lane)) {
@@ -178,6 +186,31 @@ impl Sweeper {
     pub(super) fn pull_of_run<'a>(&'a self, run: usize, pulls: &'a mut [Row]) -> PullOfRun<'a> {
         let Self { terms, factors, planes, margin, .. } = self;
         PullOfRun { terms, factors, planes, margin: *margin, run: planes.run(run), pulls }
+    }
+}
+
+/// The part of a list that a step of the sweep takes.
+fn part(len: usize, step: usize) -> Range<usize> {
+    len * step / STEPS..len * (step + 1) / STEPS
+}
+
+/// A mean square on its way.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct MeanSquare {
+    sum: f64,
+    count: usize,
+}
+
+impl AddAssign for MeanSquare {
+    fn add_assign(&mut self, other: Self) {
+        self.sum += other.sum;
+        self.count += other.count;
+    }
+}
+
+impl MeanSquare {
+    pub(crate) fn root(self) -> f64 {
+        (self.sum / self.count.max(1) as f64).sqrt()
     }
 }
 

@@ -12,11 +12,11 @@ fn transported<S: Simd>(
     simd: S,
     objective: &Objective,
     points: &[f32],
-    role: Role,
+    pick: Pick,
 ) -> (Vec<u32>, Vec<u32>, u64) {
     let (mut orders, mut draws) = (Vec::new(), Vec::new());
     let (mut chunk, mut scratch) = (Chunk::default(), Scratch::default());
-    objective.draw_subsets(1, 2, Pick::Batch(role), &mut orders, &mut draws);
+    objective.draw_subsets(1, 2, pick, &mut orders, &mut draws);
     let (draws, chunk_of, scratch) = (&draws, &mut chunk, &mut scratch);
     simd.vectorize(Transport { objective, seed: 1, step: 2, points, draws, chunk: chunk_of, scratch });
     let moves = chunk.moves.iter().map(|moved| moved.to_bits()).collect();
@@ -34,20 +34,20 @@ fn instruction_sets_agree() {
             let terms = Config::new(extent, dims).terms;
             let objective = Objective::new(extent, dims, &vec![domain; dims], &terms, &slicing).unwrap();
             let points = stream::uniforms(3, extent.samples() * dims);
-            for role in [Role::Descend, Role::Balance] {
-                let baseline = transported(pulp::Scalar, &objective, &points, role);
+            for pick in [Pick::Batch(Role::Descend), Pick::Batch(Role::Balance), Pick::Each(Role::Balance)] {
+                let baseline = transported(pulp::Scalar, &objective, &points, pick);
                 // A step may be none of the whole table's turns.
-                assert!(role == Role::Balance || !baseline.1.is_empty());
+                assert!(pick == Pick::Batch(Role::Balance) || !baseline.1.is_empty());
                 #[cfg(target_arch = "x86_64")]
                 {
                     let avx2 = pulp::x86::V3::try_new();
                     let avx512 = pulp::x86::V4::try_new();
-                    let case = format!("{spp} samples, {dims} dimensions, {directions} directions, {role:?}");
+                    let case = format!("{spp} samples, {dims} dimensions, {directions} directions, {pick:?}");
                     if let Some(simd) = avx2 {
-                        assert!(transported(simd, &objective, &points, role) == baseline, "AVX2, {case}");
+                        assert!(transported(simd, &objective, &points, pick) == baseline, "AVX2, {case}");
                     }
                     if let Some(simd) = avx512 {
-                        assert!(transported(simd, &objective, &points, role) == baseline, "AVX-512, {case}");
+                        assert!(transported(simd, &objective, &points, pick) == baseline, "AVX-512, {case}");
                     }
                 }
             }

@@ -5,6 +5,7 @@ mod bias;
 mod bound;
 mod refusals;
 mod runs;
+mod sweeps;
 
 use std::ops::ControlFlow;
 
