@@ -13,10 +13,12 @@
 use std::sync::Arc;
 
 use nalgebra::DMatrix;
-use rand::RngExt;
+use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 use rayon::prelude::*;
 
+use crate::atlas::Atlas;
+use crate::error::ConfigError;
 use crate::row::{LANES, Row};
 use crate::stream::{self, Purpose};
 use crate::target::Target;
@@ -27,10 +29,11 @@ pub(crate) struct Bank {
     blocks: Vec<Block>,
 }
 
-/// Banks that the terms of an objective share.
+/// Banks and atlases that the terms of an objective share.
 #[derive(Debug, Default)]
 pub(crate) struct Banks {
     made: Vec<(usize, Target, Arc<Bank>)>,
+    atlases: Vec<(usize, Target, Arc<Atlas>)>,
 }
 
 impl Banks {
@@ -40,10 +43,25 @@ impl Banks {
             Some((_, _, bank)) => bank.clone(),
             None => {
                 let bank = Arc::new(Bank::new(dims, target));
-                self.made.push((dims, *target, bank.clone()));
+                self.made.push((dims, target.clone(), bank.clone()));
                 bank
             }
         }
+    }
+
+    /// The atlas of a target that is not the cube, made at its first use, by term `index`.
+    pub(crate) fn atlas(
+        &mut self,
+        index: usize,
+        dims: usize,
+        target: &Target,
+    ) -> Result<Arc<Atlas>, ConfigError> {
+        if let Some((_, _, atlas)) = self.atlases.iter().find(|made| (made.0, &made.1) == (dims, target)) {
+            return Ok(atlas.clone());
+        }
+        let atlas = Arc::new(Atlas::new(index, dims, target)?);
+        self.atlases.push((dims, target.clone(), atlas.clone()));
+        Ok(atlas)
     }
 }
 
@@ -85,16 +103,19 @@ impl Bank {
     }
 }
 
+/// A random orthonormal frame: the orthonormal factor of a Gaussian matrix, uniform up to signs.
+pub(crate) fn random_frame(dims: usize, generator: &mut impl Rng) -> Vec<Vec<f64>> {
+    let gaussian = DMatrix::from_fn(dims, dims, |_, _| generator.sample(StandardNormal));
+    let frame: DMatrix<f64> = gaussian.qr().q();
+    frame.column_iter().map(|column| column.iter().copied().collect()).collect()
+}
+
 impl Block {
     fn new(dims: usize, index: u64, target: &Target) -> Self {
         let mut generator = stream::generator(0, Purpose::Frames, dims as u64, index);
         let mut directions = Vec::new();
         while directions.len() < LANES {
-            // The orthonormal factor of a Gaussian matrix is a random frame (uniform up to signs, which each use
-            // draws anew).
-            let gaussian = DMatrix::from_fn(dims, dims, |_, _| generator.sample(StandardNormal));
-            let frame: DMatrix<f64> = gaussian.qr().q();
-            directions.extend(frame.column_iter().map(|column| column.iter().copied().collect::<Vec<f64>>()));
+            directions.extend(random_frame(dims, &mut generator));
         }
         directions.truncate(LANES);
         let theta = (0..dims).map(|dim| std::array::from_fn(|lane| directions[lane][dim] as f32)).collect();

@@ -78,6 +78,9 @@ impl Objective {
                 Pick::Batch(_) => (term.rate, ((index + 1) as f64 * GOLDEN_RATIO).fract()),
                 Pick::Each(_) => (members as f64, 0.0),
             };
+            let steady = term.steady && pick == Pick::Batch(pick.role());
+            // A steady term draws a whole number of subsets, each step the same.
+            let phase = if steady { 0.0 } else { phase };
             let begin = (step as f64 * rate + phase) as u64;
             let end = ((step + 1) as f64 * rate + phase) as u64;
             let mut generator = stream::generator(seed, Purpose::Strata, step, index as u64 | pick.mark());
@@ -87,14 +90,21 @@ impl Objective {
                 Pick::Each(_) => (step as f64 * GOLDEN_RATIO).fract(),
             };
             for visit in begin..end {
-                order.turn_to(seed, index as u64, visit / members, &term.family);
+                let epoch = visit / members;
+                order.turn_to(seed, index as u64, epoch, &term.family);
                 let (i, strata) = ((visit - begin) as f64, (end - begin) as f64);
+                let member = order.members[(visit % members) as usize];
+                let phase = match steady {
+                    // Of all its visits, and apart from those of other classes.
+                    true => epoch as f64 * GOLDEN_RATIO + f64::from(member) * std::f64::consts::SQRT_2,
+                    false => turn + i * GOLDEN_RATIO,
+                };
                 draws.push(Draw {
                     term: index as u32,
-                    member: order.members[(visit % members) as usize],
+                    member,
                     // Jittered strata of the level against a rotated golden-ratio sequence of the phase.
                     level: ((i + generator.random::<f64>()) / strata).min(1.0 - f64::EPSILON),
-                    phase: (turn + i * GOLDEN_RATIO).fract(),
+                    phase: phase.fract(),
                     name: (index as u64) << 32 | (visit - begin) | pick.mark(),
                 });
             }

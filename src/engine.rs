@@ -13,7 +13,7 @@ use crate::bank::Boundary;
 use crate::direction::Directions;
 use crate::draw::{Draw, Order, Pick};
 use crate::lanes::{self, Gather, LaneBuffers};
-use crate::law::{LaneLaw, Tabulated, Trapezoid};
+use crate::law::{FromAtlas, LaneLaw, Tabulated, Trapezoid};
 use crate::long::{self, LongBuffers, LongLaw, LongShape};
 use crate::network::Network;
 use crate::objective::Objective;
@@ -25,6 +25,8 @@ use crate::term::Role;
 const CHUNK: usize = 16;
 /// Chunks in flight: bounds the memory of a large step.
 const IN_FLIGHT: usize = 128;
+/// A step of few subsets is still shared between threads.
+const FEWEST_CHUNKS: usize = 8;
 /// Samples that the subsets of a chunk should not exceed in the mean, unless a single one does.
 const CHUNK_TOUCHES: usize = 1 << 13;
 
@@ -109,7 +111,8 @@ impl Engine {
             .filter(|term| term.spec.role == pick.role())
             .map(|term| term.family.mean_size());
         let largest = sizes.fold(1.0, f64::max) as usize;
-        let per_chunk = (CHUNK_TOUCHES / largest).clamp(1, CHUNK);
+        let per_chunk =
+            (CHUNK_TOUCHES / largest).clamp(1, CHUNK).min(draws.len().div_ceil(FEWEST_CHUNKS).max(1));
         let in_flight = (CHUNK_TOUCHES * IN_FLIGHT / (largest * per_chunk)).clamp(2, IN_FLIGHT);
         for draws in draws.chunks(per_chunk * in_flight) {
             let used = draws.len().div_ceil(per_chunk);
@@ -181,7 +184,8 @@ impl Chunk {
         self.moves.resize(first + n * dims.len(), 0.0);
         let moves = &mut self.moves[first..];
         let gather = Gather { samples: subset, points, stride: objective.dims, dims, cut };
-        let Directions { count, theta, block, on_axis, .. } = &*directions;
+        let Directions { count, theta, block, laws, on_axis, .. } = &*directions;
+        let atlas = term.slicer.atlas();
         let block = term.slicer.bank().map(|bank| bank.block(*block));
         self.slices += *count as u64;
         let weights = term.family.is_weighted().then_some(weights.as_slice());
@@ -191,9 +195,10 @@ impl Chunk {
             return; // none of the class's samples at this level is demanded
         }
         if n <= term.longest {
-            let law = match block {
-                None => LaneLaw::Trapezoid(Trapezoid::new(simd, directions)),
-                Some(block) => {
+            let law = match (atlas, block) {
+                (Some(atlas), _) => LaneLaw::Atlas(FromAtlas::new(directions, atlas)),
+                (None, None) => LaneLaw::Trapezoid(Trapezoid::new(simd, directions)),
+                (None, Some(block)) => {
                     let planned = term.grids.get(&n);
                     if planned.is_none() {
                         grid.clear();
@@ -212,8 +217,9 @@ impl Chunk {
             let components = || theta.iter().map(|row| f64::from(row[lane]));
             let lowest = components().map(|component| component.min(0.0)).sum();
             let extent = components().map(f64::abs).sum();
-            let shape = match block {
-                Some(block) if !on_axis[lane] => LongShape::Tabulated { block, lane },
+            let shape = match (atlas, block) {
+                (Some(atlas), _) => LongShape::Pieces(atlas.law(laws[lane] as usize)),
+                (None, Some(block)) if !on_axis[lane] => LongShape::Tabulated { block, lane },
                 // A coordinate axis has the law of one dimension; otherwise there are at most two.
                 _ => {
                     let longer = components().map(f64::abs).fold(0.0, f64::max);
@@ -240,15 +246,19 @@ impl Chunk {
                 Role::Descend => dims.len() as f32,
                 Role::Balance => 1.0,
             };
+            // 1 where the number of slices says all.
+            let emphasis = objective.emphasis(draw.term as usize, draw.member as usize) as f32;
+            let (factor, count) = (factor * emphasis, count * emphasis);
             let (these, rest) = moves.split_at((end - begin) * dims.len());
             let samples = &self.samples[begin..end];
             let weighted = term.family.is_weighted();
             if let (&[x, y], false) = (dims.as_slice(), weighted) {
                 // The common case by itself, without a loop over two dimensions.
+                let (factor_x, factor_y) = (factor * term.stretch[0], factor * term.stretch[1]);
                 for (&sample, [along_x, along_y]) in samples.iter().zip(these.as_chunks::<2>().0) {
                     let Some((sums, hits)) = part.sample(sample, objective.dims) else { continue };
-                    sums[x] += factor * along_x;
-                    sums[y] += factor * along_y;
+                    sums[x] += factor_x * along_x;
+                    sums[y] += factor_y * along_y;
                     hits[x] += count;
                     hits[y] += count;
                 }
@@ -256,8 +266,8 @@ impl Chunk {
                 for (&sample, along) in samples.iter().zip(these.chunks_exact(dims.len())) {
                     let mass = if weighted { masses.next().copied().unwrap_or(0.0) } else { 1.0 };
                     let Some((sums, hits)) = part.sample(sample, objective.dims) else { continue };
-                    for (&dim, along) in dims.iter().zip(along) {
-                        sums[dim] += factor * along;
+                    for ((&dim, along), stretch) in dims.iter().zip(along).zip(&term.stretch) {
+                        sums[dim] += factor * stretch * along;
                         hits[dim] += count * mass;
                     }
                 }

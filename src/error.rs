@@ -73,6 +73,115 @@ pub enum ConfigError {
     /// Nothing to optimise.
     #[error("the objective has no term with a positive weight: give at least one")]
     NoTerms,
+    /// A family of classes none of which holds a sample.
+    #[error("no class of {family} holds a sample: give at least one that does")]
+    NoClasses {
+        /// Which family.
+        family: &'static str,
+    },
+    /// A list of numbers does not have one per sample.
+    #[error("{what} holds {given} entries, but the table has {expected} samples: give one per sample")]
+    SampleCount {
+        /// Which list.
+        what: &'static str,
+        /// Entries given.
+        given: usize,
+        /// Samples of the table.
+        expected: usize,
+    },
+    /// A prefix that is empty or longer than what it is a part of.
+    #[error("a prefix has length {length}: give a length from 1 to {most}")]
+    PrefixLength {
+        /// The length given.
+        length: usize,
+        /// Samples of the whole.
+        most: usize,
+    },
+    /// A caller's own class cannot serve as one.
+    #[error("class {member} of \"{name}\" gives sample {sample} weight {weight}: {problem}")]
+    CustomClass {
+        /// Name of the family.
+        name: String,
+        /// Number of the class.
+        member: usize,
+        /// The sample.
+        sample: u32,
+        /// Its weight.
+        weight: f64,
+        /// What to do.
+        problem: &'static str,
+    },
+    /// The values of a density are not one per pixel.
+    #[error("{given} values for a density of {width} by {height} pixels: give {expected}, row by row")]
+    DensityCount {
+        /// Values given.
+        given: usize,
+        /// Columns.
+        width: usize,
+        /// Rows.
+        height: usize,
+        /// Values expected.
+        expected: usize,
+    },
+    /// A value cannot be a density.
+    #[error("the density at column {x}, row {y} is {value}: give finite values of at least 0")]
+    BadDensity {
+        /// Column.
+        x: usize,
+        /// Row.
+        y: usize,
+        /// The value.
+        value: f64,
+    },
+    /// A density that is 0 everywhere: an all-black picture, where bright draws points.
+    #[error(
+        "the density is 0 in all of its {width} by {height} pixels, so that no point has a place: give at least one above 0 \
+         (a picture needs some ink, or the other tone)"
+    )]
+    NoDensity {
+        /// Columns.
+        width: usize,
+        /// Rows.
+        height: usize,
+    },
+    /// Densities of different sizes cannot be added.
+    #[error("a density has {given:?} columns and rows, another {expected:?}: bring all to the same size")]
+    OtherDensity {
+        /// Columns and rows.
+        given: [usize; 2],
+        /// Those of the first.
+        expected: [usize; 2],
+    },
+    /// A target's law along a direction is not a law.
+    #[error("the target of term {term} has no finite law along {direction:?}: correct its projection")]
+    BadLaw {
+        /// Position of the term.
+        term: usize,
+        /// The direction.
+        direction: Vec<f64>,
+    },
+    /// A target cannot be projected on the dimensions of its term.
+    #[error(
+        "term {term}: the target has {target} dimensions, but the term sees {dims}: name as many dimensions"
+    )]
+    TargetDims {
+        /// Position of the term.
+        term: usize,
+        /// Dimensions of the target.
+        target: usize,
+        /// Dimensions of the term.
+        dims: usize,
+    },
+    /// A target that is not uniform in a dimension that wraps.
+    #[error(
+        "term {term} sees dimension {dimension}, a torus, but its target is not uniform: make it an interval"
+    )]
+    TargetOnTorus {
+        /// Position of the term.
+        term: usize,
+        /// The dimension.
+        dimension: usize,
+    },
     /// A demand that no term of the objective serves.
     #[error("nothing is demanded: demand at least one pixel and a dimension that a term sees")]
     NoDemand,
@@ -157,6 +266,29 @@ pub enum ConfigError {
         value: f64,
         /// What is admissible, in words.
         expected: &'static str,
+    },
+}
+
+/// A picture that cannot serve as a density.
+#[cfg(feature = "render")]
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum PictureError {
+    /// The file cannot be read as a picture.
+    #[error("cannot read {}: {source}; give a PNG or EXR file", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What stands against it.
+        source: image::ImageError,
+    },
+    /// The picture is no density.
+    #[error("{}: {problem}", path.display())]
+    Density {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: ConfigError,
     },
 }
 

@@ -54,7 +54,7 @@ impl LaneBuffers {
         if self.keys.len() < n {
             self.projections.resize(n, [0.0; LANES]);
             self.keys.resize(n, [0; LANES]);
-            self.means.resize(n / 2, [0.0; LANES]);
+            self.means.resize((n / 2).max(self.means.len()), [0.0; LANES]);
             self.root_means.extend((self.root_means.len()..n / 2).map(law::root_mean));
         }
         if self.coordinates.len() < n * dims {
@@ -135,7 +135,14 @@ pub(crate) fn transport<S: Simd>(
     let (coordinates, projections) = (&mut coordinates[..n * theta.len()], &mut projections[..n]);
     subset.gather(coordinates);
     project(coordinates, theta, projections);
-    if n == 1 {
+    if let LaneLaw::Atlas(atlas) = law {
+        let keys = &mut keys[..n];
+        means.resize(n.max(means.len()), [0.0; LANES]);
+        encode(simd, projections, law.extent(), keys);
+        network.sort(simd, keys);
+        atlas.cell_means(&mut means[..n]);
+        match_all_targets(keys, &means[..n], targets);
+    } else if n == 1 {
         targets[0] = [0.0; LANES];
     } else {
         let (keys, means) = (&mut keys[..n], &mut means[..n / 2]);
@@ -232,6 +239,16 @@ fn match_targets(keys: &[[u32; LANES]], means: &[Row], targets: &mut [Row; LONGE
     if lower.len() > upper.len() {
         for (lane, middle) in lower[upper.len()].iter().enumerate() {
             targets[(middle & PLACE_MASK) as usize][lane] = 0.0;
+        }
+    }
+}
+
+/// The same for laws that are not symmetric.
+#[inline(always)]
+fn match_all_targets(keys: &[[u32; LANES]], means: &[Row], targets: &mut [Row; LONGEST]) {
+    for (key, mean) in keys.iter().zip(means) {
+        for lane in 0..LANES {
+            targets[(key[lane] & PLACE_MASK) as usize][lane] = mean[lane];
         }
     }
 }

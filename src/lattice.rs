@@ -35,6 +35,11 @@ pub struct Site {
 }
 
 impl Extent {
+    /// A point set: one frame of one row, one sample per site, so that a demand may name single points.
+    pub const fn points(count: usize) -> Self {
+        Self { frames: 1, height: 1, width: count, spp: 1 }
+    }
+
     /// Sites (pixels × frames) of the table.
     pub fn sites(&self) -> usize {
         self.frames * self.height * self.width

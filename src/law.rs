@@ -6,9 +6,11 @@
 
 use pulp::Simd;
 
+use crate::atlas::Atlas;
 use crate::bank::{Block, Boundary};
 use crate::direction::Directions;
 use crate::row::{LANES, Row};
+use crate::target::Pieces;
 
 /// The laws of one group of directions, of points whose coordinates are taken from the middle of the cube: each is
 /// symmetric around 0.
@@ -17,6 +19,42 @@ pub(crate) enum LaneLaw<'a> {
     Trapezoid(Trapezoid),
     /// A block of tabulated laws.
     Tabulated(Tabulated<'a>),
+    /// Laws without symmetry.
+    Atlas(FromAtlas<'a>),
+}
+
+/// Laws of an atlas. They are not symmetric, so that all cells are asked for.
+pub(crate) struct FromAtlas<'a> {
+    laws: [&'a Pieces; LANES],
+    count: usize,
+    extent: Row,
+    /// Projection of the middle of the cube.
+    centre: [f64; LANES],
+}
+
+impl<'a> FromAtlas<'a> {
+    #[inline(always)]
+    pub(crate) fn new(directions: &Directions, atlas: &'a Atlas) -> Self {
+        let (mut extent, mut centre) = ([0.0_f32; LANES], [0.0; LANES]);
+        for row in &directions.theta {
+            for lane in 0..LANES {
+                extent[lane] += row[lane].abs();
+                centre[lane] += 0.5 * f64::from(row[lane]);
+            }
+        }
+        let laws = std::array::from_fn(|lane| atlas.law(directions.laws[lane] as usize));
+        Self { laws, count: directions.count, extent, centre }
+    }
+
+    /// Writes the means of the quantile function over all cells.
+    #[inline(always)]
+    pub(crate) fn cell_means(&self, means: &mut [Row]) {
+        let cells = means.len();
+        for lane in 0..self.count {
+            self.laws[lane]
+                .for_each_cell(cells, |cell, mean| means[cell][lane] = (mean - self.centre[lane]) as f32);
+        }
+    }
 }
 
 impl LaneLaw<'_> {
@@ -26,6 +64,7 @@ impl LaneLaw<'_> {
         match self {
             LaneLaw::Trapezoid(law) => &law.extent,
             LaneLaw::Tabulated(law) => &law.extent,
+            LaneLaw::Atlas(law) => &law.extent,
         }
     }
 
@@ -36,6 +75,7 @@ impl LaneLaw<'_> {
         match self {
             LaneLaw::Trapezoid(law) => law.lower_cell_means(simd, n, root_means, cells),
             LaneLaw::Tabulated(law) => law.lower_cell_means(n, cells),
+            LaneLaw::Atlas(_) => {}
         }
     }
 }

@@ -86,6 +86,7 @@
 //! [^korac]: Korać, Salaün, Georgiev, Grittmann, Slusallek, Myszkowski, Singh 2023, "Perceptual error optimization for Monte
 //!     Carlo animation rendering", SIGGRAPH Asia, <https://doi.org/10.1145/3610548.3618146>.
 
+mod atlas;
 mod atomic;
 mod bank;
 mod class;
@@ -102,6 +103,7 @@ mod lanes;
 mod lattice;
 mod law;
 mod long;
+mod mapping;
 mod metadata;
 pub mod metrics;
 mod network;
@@ -109,6 +111,7 @@ mod npy;
 mod objective;
 mod optimizer;
 mod plan;
+mod point_set;
 mod pull;
 #[cfg(feature = "render")]
 pub mod render;
@@ -122,18 +125,26 @@ mod target;
 mod term;
 mod transport;
 
-pub use class::{Classes, Form};
+pub use class::{
+    ClassFamily, Classes, CustomClasses, Form, LabelSet, Lengths, Member, PrefixLength, PrefixOf, Ramp,
+};
 pub use cramer::Sweeps;
 pub use demand::Demand;
 pub use descent::{Descent, Schedule, Shape};
 pub use domain::{BELOW_ONE, Domain};
+#[cfg(feature = "render")]
+pub use error::PictureError;
 pub use error::{ConfigError, FormatError, TableError};
 pub use kernel::{Kernel, SpatialKernel, SpatialTap, Tap, TemporalKernel};
 pub use lattice::{Extent, Site};
+pub use mapping::Mapping;
 pub use metadata::{BoundEstimate, BoundRecord, KernelTaps, Metadata, RunRecord};
 pub use objective::{Objective, Slice};
 pub use optimizer::{Config, Optimizer};
+pub use point_set::Subsets;
 pub use run::{Ended, RunReport, StepReport, Until, Work};
 pub use table::SampleTable;
-pub use target::{Projected, Target};
+pub use target::{CustomTarget, Density, Measure, PointCloud, Projected, Target};
+#[cfg(feature = "render")]
+pub use target::{Inks, Tone};
 pub use term::{DimensionGroup, Role, Slicing, Term};

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use crate::bank::{Block, Boundary};
 use crate::lanes::Gather;
+use crate::target::Pieces;
 
 /// Above this many samples a sort is worth sharing between threads.
 pub(crate) const SHARED: usize = 1 << 15;
@@ -47,6 +48,8 @@ pub(crate) enum LongShape<'a> {
         /// `b`.
         shorter: f64,
     },
+    /// Of a target other than the cube.
+    Pieces(&'a Pieces),
     /// From a bank.
     Tabulated {
         /// Where the direction comes from.
@@ -68,6 +71,8 @@ impl LongShape<'_> {
                     + beyond * (longer * 0.5 * (u + rising) + 0.5 * shorter)
             }
             LongShape::Tabulated { block, lane } => block.integral_of_lane(&Boundary::new(u), lane),
+            // Not symmetric: the callers ask it themselves.
+            LongShape::Pieces(_) => 0.0,
         }
     }
 }
@@ -77,6 +82,9 @@ impl LongLaw<'_> {
     #[inline(always)]
     fn for_each_cell(&self, n: usize, mut visit: impl FnMut(usize, f64)) {
         let &LongLaw { lowest, extent, ref shape } = self;
+        if let LongShape::Pieces(pieces) = shape {
+            return pieces.for_each_cell(n, visit);
+        }
         let cells = n as f64;
         let mut below = 0.0;
         for cell in 0..n / 2 {
@@ -107,6 +115,9 @@ impl LongLaw<'_> {
         // A weight may be too small beside the sum of all to give its cell a width, or its mean any digits.
         const NARROWEST: f64 = 1e-8;
         let &LongLaw { lowest, extent, ref shape } = self;
+        if let LongShape::Pieces(pieces) = shape {
+            return pieces.cell_mean(lower, upper);
+        }
         let spare = 0.5 * (NARROWEST - (upper - lower)).max(0.0);
         let (lower, upper) = ((lower - spare).max(0.0), (upper + spare).min(1.0));
         // The quantile at 1 - u is the extent less that at u.

@@ -10,7 +10,7 @@ use crate::domain::Domain;
 use crate::error::ConfigError;
 use crate::kernel::{Kernel, Tap};
 use crate::lattice::Extent;
-use crate::plan::{PlannedTerm, classes};
+use crate::plan::{PlannedTerm, classes, share_work};
 use crate::table::SampleTable;
 use crate::target::Target;
 use crate::term::{DimensionGroup, Role, Slicing, Term};
@@ -126,16 +126,17 @@ impl Objective {
         slicing.validate()?;
         let (mut planned, mut banks) = (Vec::new(), Banks::default());
         for (index, term) in terms.iter().enumerate() {
-            planned.push(PlannedTerm::new(index, term, extent, dims, slicing, wanted.clone(), &mut banks)?);
+            planned.push(PlannedTerm::new(
+                index,
+                term,
+                extent,
+                domains,
+                slicing,
+                wanted.clone(),
+                &mut banks,
+            )?);
         }
-        let classes = classes(&planned, extent);
-        let slices = slicing.batch_slices.unwrap_or_else(|| (classes * slicing.directions).div_ceil(16));
-        // Touches are shared by weight; a slice touches as many samples as its subset holds.
-        let slices_of = |term: &PlannedTerm| term.spec.weight / term.family.mean_size();
-        let total: f64 = planned.iter().map(slices_of).sum();
-        for term in &mut planned {
-            term.rate = slices_of(term) / total * slices as f64 / term.slicer.per_subset() as f64;
-        }
+        share_work(&mut planned, extent, slicing);
         Ok(Self { extent, dims, domains: domains.to_vec(), terms: planned, wanted })
     }
 
@@ -189,14 +190,21 @@ impl Objective {
         self.terms.get(term)?.family.taps()
     }
 
-    /// Slices of lattice terms that a step draws per visited pixel and frame, in the mean.
+    /// Slices of lattice terms that a step draws per visited pixel and frame, in the mean; per class where none of the
+    /// terms has classes per pixel.
     pub(crate) fn slices_per_class_and_step(&self) -> f64 {
+        let steady: Vec<_> =
+            self.terms.iter().filter(|term| term.steady && term.spec.role == Role::Descend).collect();
+        if !steady.is_empty() {
+            let slices: f64 = steady.iter().map(|term| term.slices()).sum();
+            return slices / steady.iter().map(|term| term.family.visited()).sum::<usize>() as f64;
+        }
         let slices = |term: &PlannedTerm| match term.spec.classes {
-            Classes::Lattice { .. } => term.rate * term.slicer.per_subset() as f64,
+            Classes::Lattice { .. } => term.slices(),
             _ => 0.0,
         };
         let lattice: f64 = self.terms.iter().map(slices).sum();
-        let all: f64 = self.terms.iter().map(|term| term.rate * term.slicer.per_subset() as f64).sum();
+        let all: f64 = self.terms.iter().map(PlannedTerm::slices).sum();
         (if lattice > 0.0 { lattice } else { all }) / classes(&self.terms, self.extent) as f64
     }
 
@@ -218,7 +226,7 @@ impl Objective {
         Ok(cramer::value_and_gradient(self, points))
     }
 
-    /// Mean over `slices` of `(n / N) W2²` and its gradient with respect to every coordinate, in `f64`.
+    /// Mean over `slices` of `(n / N) W2²`, times the weight of the class, and its gradient with respect to every coordinate, in `f64`.
     ///
     /// `points` are the coordinates of all samples in the order of [`crate::SampleTable`], in `[0, 1)`; the gradient has
     /// the same order. The weighted form replaces `n` by the sum of relative weights. An empty list of slices has
@@ -243,6 +251,7 @@ impl Objective {
             let moved: Vec<_> = slices.par_iter().map(|slice| self.transport(points, slice)).collect();
             for (slice, moved) in slices.iter().zip(moved) {
                 let dims = &self.terms[slice.term].spec.dims;
+                let scale = scale * self.emphasis(slice.term, slice.member);
                 value += scale * moved.cost;
                 for (&sample, displacement) in moved.samples.iter().zip(moved.displacements) {
                     for (&dim, component) in dims.iter().zip(&slice.direction) {
@@ -293,6 +302,40 @@ impl Objective {
             };
             dims.iter().enumerate().map(along).sum::<f64>()
         }));
+    }
+
+    /// Makes white noise noise of the targets: each sample is drawn from that of the smallest classes that hold it.
+    pub(crate) fn place(&self, points: &mut [f32]) {
+        let mut terms: Vec<&PlannedTerm> =
+            self.terms.iter().filter(|term| term.spec.role == Role::Descend).collect();
+        if terms.iter().all(|term| term.spec.target.warp().is_none()) {
+            return;
+        }
+        terms.sort_by(|a, b| b.family.mean_size().total_cmp(&a.family.mean_size()));
+        let noise = points.to_vec();
+        let mut samples = Vec::new();
+        for term in terms {
+            let Some(warp) = term.spec.target.warp() else { continue };
+            for index in 0..term.family.visited() {
+                term.family.select(term.family.visited_member(index), 0.0, &mut samples);
+                for &sample in &samples {
+                    let first = sample as usize * self.dims;
+                    let mut place: Vec<f64> =
+                        term.spec.dims.iter().map(|dim| f64::from(noise[first + dim])).collect();
+                    warp.place(&mut place);
+                    for (dim, place) in term.spec.dims.iter().zip(place) {
+                        points[first + dim] = Domain::Interval.admit(place as f32);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Factor on what the slices of a class pull.
+    #[inline(always)]
+    pub(crate) fn emphasis(&self, term: usize, member: usize) -> f64 {
+        let term = &self.terms[term];
+        term.pull * term.family.emphasis(member)
     }
 
     /// Refuses a table of another shape, also one that holds as many values.

@@ -86,7 +86,7 @@ pub struct Optimizer {
 }
 
 impl Optimizer {
-    /// Starts from white noise.
+    /// Starts from white noise; samples whose target is a density or a cloud start from draws of it.
     ///
     /// # Errors
     /// Whatever [`Objective::new`] refuses, and descent parameters outside their ranges.
@@ -112,7 +112,8 @@ impl Optimizer {
         config.descent.validate()?;
         config.sweeps.validate()?;
         config.balance.validate()?;
-        let points = crate::stream::uniforms(config.seed, config.extent.samples() * config.dims);
+        let mut points = crate::stream::uniforms(config.seed, config.extent.samples() * config.dims);
+        objective.place(&mut points);
         let coordinates = points.len();
         let pull = Pull { sums: vec![0.0; coordinates], hits: vec![0.0; coordinates], ..Pull::default() };
         Ok(Self {

@@ -10,6 +10,7 @@ use crate::metadata::BoundEstimate;
 use crate::objective::{Objective, Slice};
 use crate::stream::{self, Purpose};
 use crate::table::SampleTable;
+use crate::target::Target;
 use crate::transport::Workspace;
 
 /// The bound on a table's filtered error, measured on random slices.
@@ -140,7 +141,11 @@ fn distances(
         let length = gaussian.iter().map(|component| component * component).sum::<f64>().sqrt();
         gaussian.iter().map(|component| component / length.max(f64::MIN_POSITIVE)).collect()
     };
+    let scales = planned.spec.target.scales(dims);
+    let direction: Vec<f64> =
+        direction.iter().zip(scales).map(|(component, scale)| component * scale).collect();
     let law = planned.spec.target.project(&direction);
+    let is_cube = planned.spec.target == Target::UniformCube;
     let cut: Vec<f64> = (0..dims).map(|_| generator.random()).collect();
     let mut strata: Vec<usize> = (0..per_direction).collect();
     strata.shuffle(&mut generator);
@@ -158,10 +163,15 @@ fn distances(
         }
         planned.family.weigh(slice.member, &mut weights);
         let weights = planned.family.is_weighted().then_some(weights.as_slice());
-        let mass = weights.map_or(samples.len() as f64, |weights| weights.iter().sum());
+        let mass = weights.map_or(samples.len() as f64, |weights| weights.iter().sum())
+            * planned.family.emphasis(slice.member);
         objective.project(points, &slice, &samples, &mut projections);
         of_table += mass * workspace.w1(&law, &projections, weights);
         for projection in &mut projections {
+            if !is_cube {
+                *projection = law.quantile(generator.random());
+                continue;
+            }
             *projection = slice.direction.iter().map(|component| component * generator.random::<f64>()).sum();
         }
         of_noise += mass * workspace.w1(&law, &projections, weights);

@@ -10,6 +10,9 @@
 //! | what is the objective worth, with exact distances? | [`bound()`] |
 //! | does the table as a whole, a frame, a pixel estimate integrals too high or too low? | [`Bias`] |
 //! | are the samples spread evenly over the square? | [`Histogram`], [`l2_star_discrepancy`] |
+//! | what is the error of a prefix, of a class, of a point set? | [`set_error`] |
+//! | do points follow a picture? | [`density_match`] |
+//! | how far is a point set from its target? | [`sliced_w2`] |
 //! | at which frequencies is the error? | [`Spectra`] |
 //!
 //! All but the histogram of a table measure one *dimension group* `dims`: the list of table dimensions that a
@@ -18,6 +21,7 @@
 
 mod bias;
 mod bound;
+mod density_match;
 mod discrepancy;
 mod error_image;
 mod families;
@@ -27,12 +31,15 @@ mod integrands;
 #[cfg(feature = "render")]
 mod picture;
 mod ratios;
+mod set_error;
+mod sliced;
 mod spectrum;
 mod uniformity;
 mod volume;
 
 pub use bias::Bias;
 pub use bound::{Bound, bound};
+pub use density_match::{DensityMatch, density_match};
 pub use discrepancy::l2_star_discrepancy;
 pub use error_image::error_image;
 pub use families::{Family, Integrands};
@@ -41,5 +48,7 @@ pub use integrands::Integrand;
 #[cfg(feature = "render")]
 pub use picture::{gray, write_gray_png, write_radial_csv};
 pub use ratios::{Estimate, Ratios};
+pub use set_error::set_error;
+pub use sliced::sliced_w2;
 pub use spectrum::{RadialBin, Spectra};
 pub use uniformity::Histogram;

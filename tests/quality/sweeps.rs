@@ -15,9 +15,10 @@ fn reaches(shape: [usize; 4], dims: usize, work: Work, [most_filtered, most_boun
         let table = optimizer.table();
         let seen: Vec<usize> = (0..dims.min(2)).collect();
         let integrands = Integrands::random(seen.len(), 64, seed).unwrap();
-        let Classes::Lattice { kernel, .. } = &optimizer.config().terms[0].classes else { panic!("no kernel") };
-        let filtered =
-            filtered_error(&table, &seen, kernel, &integrands).unwrap().spatio_temporal.mean.mean;
+        let Classes::Lattice { kernel, .. } = &optimizer.config().terms[0].classes else {
+            panic!("no kernel")
+        };
+        let filtered = filtered_error(&table, &seen, kernel, &integrands).unwrap().spatio_temporal.mean.mean;
         let bias = Bias::measure(&table, &seen, &integrands).unwrap().table.mean.mean;
         let (bound, _) = ratio(&optimizer, &table, 4096);
         println!("{shape:?} {dims} {work:?}: filtered {filtered:.3} bound {bound:.3} bias {bias:.2}");

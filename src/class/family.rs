@@ -1,44 +1,13 @@
-//! Families of filters. A *class* is one member of a family: the filter of one pixel, one frame, the whole table.
+//! A family planned for one extent: everything about its filters that does not depend on the samples.
 
 use std::sync::Arc;
 
-use serde::{Deserialize, Serialize};
-
+use super::listed::Listed;
+use super::prefixes::Prefixes;
+use super::{Classes, Form};
 use crate::error::ConfigError;
-use crate::kernel::{Kernel, Tap};
+use crate::kernel::Tap;
 use crate::lattice::Extent;
-
-/// A family of filters over the samples of a table (Salaün et al. 2022, Section 3).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-#[non_exhaustive]
-pub enum Classes {
-    /// One class per pixel and frame: the kernel centred there.
-    Lattice {
-        /// The filter.
-        kernel: Kernel,
-        /// How its weights enter.
-        form: Form,
-    },
-    /// One class: all samples alike. It is what makes a table unbiased.
-    WholeTable,
-    /// One class per frame: its samples alike.
-    PerFrame,
-    /// One class per pixel and frame: its samples alike (of use for `spp > 1`).
-    PerPixel,
-}
-
-/// How the weights of a filter enter the transport.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Form {
-    /// Uniform level `z`, unweighted subset `{j : w_j > z}`: the objective of Salaün et al. 2022. Cheap.
-    #[default]
-    LevelSets,
-    /// All samples under the filter, each with its weight. By the triangle inequality a bound at least as tight,
-    /// at the cost of the whole support in every slice.
-    Weighted,
-}
 
 /// A family planned for one extent: taps are sorted, sizes known, and where only a part of the table is demanded, the
 /// rest is left out.
@@ -59,6 +28,10 @@ enum Shape {
     /// Taps by falling weight, with offsets made non-negative modulo the extent and counted in sites: frames, rows,
     /// columns.
     Lattice { taps: Vec<Tap>, offsets: Vec<[u32; 3]>, form: Form, wanted: Wanted },
+    /// Runs from the start of a block of samples.
+    Prefixes { prefixes: Prefixes, wanted: Wanted },
+    /// Samples of each class, written out; what is not demanded is left out already.
+    Listed(Arc<Listed>),
 }
 
 /// Demanded sites: one flag each, or all of them.
@@ -95,14 +68,30 @@ impl Family {
                 });
                 Shape::Lattice { offsets: offsets.collect(), taps, form: *form, wanted: wanted.clone() }
             }),
+            Classes::Prefixes { of, lengths } => Prefixes::new(*of, lengths, extent)
+                .map(|prefixes| Shape::Prefixes { prefixes, wanted: wanted.clone() }),
+            Classes::Labelled { labels, subsets } => {
+                Listed::labelled(labels, subsets, extent, &wanted).map(|listed| Shape::Listed(listed.into()))
+            }
+            Classes::Ramps { coordinates, ramps } => {
+                Listed::ramps(coordinates, ramps, extent, &wanted).map(|listed| Shape::Listed(listed.into()))
+            }
+            Classes::Custom(classes) => {
+                Listed::custom(classes, extent, &wanted).map(|listed| Shape::Listed(listed.into()))
+            }
         }?;
-        let per_class = match &shape {
-            Shape::Blocks { sites, .. } => *sites as f64,
-            Shape::Lattice { taps, form: Form::Weighted, .. } => taps.len() as f64,
-            Shape::Lattice { taps, .. } => taps.iter().map(|tap| tap.weight).sum(),
+        let spp = extent.spp as f64;
+        let mean_size = match &shape {
+            Shape::Blocks { sites, .. } => *sites as f64 * spp,
+            Shape::Lattice { taps, form: Form::Weighted, .. } => taps.len() as f64 * spp,
+            Shape::Lattice { taps, .. } => taps.iter().map(|tap| tap.weight).sum::<f64>() * spp,
+            Shape::Prefixes { prefixes, .. } => prefixes.mean_length(),
+            Shape::Listed(listed) => listed.mean_size(),
         };
-        let mut family = Self { extent, shape, visited: None, mean_size: per_class * extent.spp as f64 };
-        if let Wanted::Some(flags) = &wanted {
+        let mut family = Self { extent, shape, visited: None, mean_size };
+        if let Shape::Listed(listed) = &family.shape {
+            family.visited = listed.visited();
+        } else if let Wanted::Some(flags) = &wanted {
             // Every wanted site is held as often as before, but by fewer classes.
             let visited = family.holding(flags);
             let share = flags.iter().filter(|&&flag| flag).count() as f64 / extent.sites() as f64;
@@ -117,6 +106,8 @@ impl Family {
         let mut holds = vec![false; self.members()];
         for site in (0..flags.len()).filter(|&site| flags[site]) {
             match &self.shape {
+                Shape::Listed(_) => {}
+                Shape::Prefixes { prefixes, .. } => prefixes.mark(site, &mut holds),
                 Shape::Blocks { sites, .. } => holds[site / sites] = true,
                 Shape::Lattice { taps, .. } => {
                     let at = self.extent.site(site);
@@ -135,6 +126,37 @@ impl Family {
         match &self.shape {
             Shape::Blocks { sites, .. } => self.extent.sites() / sites,
             Shape::Lattice { .. } => self.extent.sites(),
+            Shape::Prefixes { prefixes, .. } => prefixes.members(),
+            Shape::Listed(listed) => listed.members(),
+        }
+    }
+
+    /// Whether every site of the table has classes of its own: a step then visits a part of them.
+    pub(crate) fn is_per_site(&self) -> bool {
+        match &self.shape {
+            Shape::Blocks { sites, .. } => *sites == 1 && self.extent.sites() > 1,
+            Shape::Lattice { .. } => true,
+            Shape::Prefixes { prefixes, .. } => prefixes.blocks() > 1,
+            Shape::Listed(_) => false,
+        }
+    }
+
+    /// Whether the level decides which samples of a class are selected.
+    pub(crate) fn has_levels(&self) -> bool {
+        match &self.shape {
+            Shape::Blocks { .. } | Shape::Prefixes { .. } => false,
+            Shape::Lattice { form, .. } => *form == Form::LevelSets,
+            Shape::Listed(listed) => listed.has_levels(),
+        }
+    }
+
+    /// Weight of a class beside the others of its family.
+    #[inline(always)]
+    pub(crate) fn emphasis(&self, member: usize) -> f64 {
+        match &self.shape {
+            Shape::Blocks { .. } | Shape::Lattice { .. } => 1.0,
+            Shape::Prefixes { prefixes, .. } => prefixes.emphasis(member),
+            Shape::Listed(listed) => listed.emphasis(member),
         }
     }
 
@@ -161,9 +183,20 @@ impl Family {
         self.mean_size
     }
 
-    /// Sum of the weights that a random level of a visited class selects, in the mean.
+    /// Sum of the weights that a random level of a visited class selects, in the mean over classes by emphasis.
     pub(crate) fn mean_mass(&self) -> f64 {
         match &self.shape {
+            Shape::Prefixes { prefixes, wanted: Wanted::All } => prefixes.mean_mass(),
+            Shape::Prefixes { .. } => {
+                let (mut samples, mut mass) = (Vec::new(), 0.0);
+                for index in 0..self.visited() {
+                    let member = self.visited_member(index);
+                    self.select(member, 0.0, &mut samples);
+                    mass += self.emphasis(member) * samples.len() as f64;
+                }
+                mass / self.visited() as f64
+            }
+            Shape::Listed(listed) => listed.mean_mass(),
             Shape::Lattice { taps, form: Form::Weighted, .. } => {
                 self.mean_size * taps.iter().map(|tap| tap.weight).sum::<f64>() / taps.len() as f64
             }
@@ -174,14 +207,16 @@ impl Family {
     /// The taps of a lattice family.
     pub(crate) fn taps(&self) -> Option<&[Tap]> {
         match &self.shape {
-            Shape::Blocks { .. } => None,
             Shape::Lattice { taps, .. } => Some(taps),
+            _ => None,
         }
     }
 
     /// Sizes that subsets can have, increasing. Under a partial demand any size up to the last may occur.
     pub(crate) fn sizes(&self) -> Vec<usize> {
         let sites: Vec<usize> = match &self.shape {
+            Shape::Prefixes { prefixes, .. } => return prefixes.sizes(),
+            Shape::Listed(listed) => return listed.sizes(),
             Shape::Blocks { sites, .. } => vec![*sites],
             Shape::Lattice { taps, form: Form::Weighted, .. } => vec![taps.len()],
             Shape::Lattice { taps, .. } => {
@@ -194,8 +229,13 @@ impl Family {
 
     /// Whether a part of the table is left out.
     pub(crate) fn is_partial(&self) -> bool {
-        let (Shape::Blocks { wanted, .. } | Shape::Lattice { wanted, .. }) = &self.shape;
-        matches!(wanted, Wanted::Some(_))
+        match &self.shape {
+            Shape::Blocks { wanted, .. } | Shape::Lattice { wanted, .. } | Shape::Prefixes { wanted, .. } => {
+                matches!(wanted, Wanted::Some(_))
+            }
+            // Lists hold what is demanded, and know their sizes.
+            Shape::Listed(_) => false,
+        }
     }
 
     /// Calls `visit(site, relative weight)` for the demanded sites of a class whose weight exceeds `level`, by falling
@@ -203,6 +243,7 @@ impl Family {
     #[inline(always)]
     fn for_each_site(&self, member: usize, level: f64, mut visit: impl FnMut(usize, f64)) {
         match &self.shape {
+            Shape::Prefixes { .. } | Shape::Listed(_) => {}
             Shape::Blocks { sites, wanted } => {
                 (member * sites..(member + 1) * sites)
                     .filter(|&site| wanted.site(site))
@@ -223,6 +264,7 @@ impl Family {
     #[inline(always)]
     fn tapped_sites(&self, member: usize, level: f64) -> impl Iterator<Item = u32> {
         let offsets = match &self.shape {
+            Shape::Prefixes { .. } | Shape::Listed(_) => &[],
             Shape::Blocks { .. } => &[],
             Shape::Lattice { offsets, form: Form::Weighted, .. } => offsets.as_slice(),
             Shape::Lattice { taps, offsets, form: Form::LevelSets, .. } => {
@@ -243,9 +285,17 @@ impl Family {
     pub(crate) fn select(&self, member: usize, level: f64, samples: &mut Vec<u32>) {
         samples.clear();
         let spp = self.extent.spp as u32;
-        if let (1, Shape::Lattice { wanted: Wanted::All, .. }) = (spp, &self.shape) {
-            // The common case by itself, without a choice per sample.
-            return samples.extend(self.tapped_sites(member, level));
+        match &self.shape {
+            Shape::Listed(listed) => return samples.extend_from_slice(listed.above(member, level)),
+            Shape::Prefixes { prefixes, wanted } => {
+                let run = prefixes.run(member);
+                return samples.extend(run.filter(|&sample| wanted.site((sample / spp) as usize)));
+            }
+            Shape::Lattice { wanted: Wanted::All, .. } if spp == 1 => {
+                // The common case by itself, without a choice per sample.
+                return samples.extend(self.tapped_sites(member, level));
+            }
+            Shape::Blocks { .. } | Shape::Lattice { .. } => {}
         }
         self.for_each_site(member, level, |site, _| {
             samples.extend(site as u32 * spp..(site as u32 + 1) * spp)
@@ -270,7 +320,7 @@ impl Family {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::{SpatialKernel, TemporalKernel};
+    use crate::kernel::{Kernel, SpatialKernel, TemporalKernel};
     use crate::lattice::Site;
 
     const EXTENT: Extent = Extent { frames: 4, height: 20, width: 12, spp: 3 };

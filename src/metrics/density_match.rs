@@ -1,0 +1,103 @@
+//! Whether points are where a density is, to the eye.
+
+use crate::error::ConfigError;
+use crate::target::Density;
+
+/// How points follow a density after both are blurred.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DensityMatch {
+    /// Pearson's correlation of both blurred pictures over their pixels; 1 for a constant picture matched by a constant.
+    pub correlation: f64,
+    /// Points that the blurred density does not reach.
+    pub strays: usize,
+}
+
+/// Standard deviations after which the Gaussian ends.
+const REACH: f64 = 3.0;
+
+/// Blurs the density and the histogram of the points over its pixels with the Gaussian `exp(-r² / (2 sigma²))`, cut off after three
+/// standard deviations, and compares.
+///
+/// `sigma` is in units of the picture's longer side; about two distances between neighbouring points is what an eye blurs.
+/// `points` are pairs of coordinates in `[0, 1)`. O(points + pixels · sigma in pixels).
+///
+/// # Errors
+/// No points, an incomplete last one, coordinates outside `[0, 1)`; a `sigma` that is not positive, or beyond 1.
+pub fn density_match(points: &[f64], density: &Density, sigma: f64) -> Result<DensityMatch, ConfigError> {
+    if points.is_empty() {
+        return Err(ConfigError::EmptyAxis { axis: "points" });
+    }
+    if !points.len().is_multiple_of(2) {
+        let (given, expected) = (points.len(), points.len() + 1);
+        return Err(ConfigError::ValueCount { what: "the list of points", given, expected });
+    }
+    if let Some(index) = points.iter().position(|value| !(0.0..1.0).contains(value)) {
+        return Err(ConfigError::BadPoint { index, value: points[index] });
+    }
+    if !(sigma > 0.0 && sigma <= 1.0) {
+        let expected = "above 0, at most 1 (of the longer side)";
+        return Err(ConfigError::OutOfRange { name: "sigma", value: sigma, expected });
+    }
+    let [width, height] = density.size();
+    let sigma_px = sigma * width.max(height) as f64;
+    let pixel = |point: &[f64]| {
+        let at = |value: f64, len: usize| ((value * len as f64) as usize).min(len - 1);
+        at(point[1], height) * width + at(point[0], width)
+    };
+    let mut histogram = vec![0.0; width * height];
+    points.chunks_exact(2).for_each(|point| histogram[pixel(point)] += 1.0);
+    let wanted: Vec<f64> = density.values().iter().map(|&value| f64::from(value)).collect();
+    let [found, wanted] = [histogram, wanted].map(|picture| blurred(&picture, width, sigma_px));
+    let strays = points.chunks_exact(2).filter(|point| wanted[pixel(point)] == 0.0).count();
+    Ok(DensityMatch { correlation: correlation(&found, &wanted), strays })
+}
+
+/// A picture under a Gaussian; beyond its edges there is nothing.
+fn blurred(picture: &[f64], width: usize, sigma_px: f64) -> Vec<f64> {
+    let reach = (REACH * sigma_px).ceil() as usize;
+    let taps: Vec<f64> = (0..=reach).map(|r| (-0.5 * (r as f64 / sigma_px).powi(2)).exp()).collect();
+    let height = picture.len() / width;
+    let pass = |picture: &[f64], step: usize, len: usize, lines: &mut dyn Iterator<Item = usize>| {
+        let mut out = vec![0.0; picture.len()];
+        for first in lines {
+            for at in 0..len {
+                let from = at.saturating_sub(reach)..(at + reach + 1).min(len);
+                let sum: f64 =
+                    from.map(|other| taps[other.abs_diff(at)] * picture[first + other * step]).sum();
+                out[first + at * step] = sum;
+            }
+        }
+        out
+    };
+    let rows = pass(picture, 1, width, &mut (0..height).map(|row| row * width));
+    pass(&rows, width, height, &mut (0..width))
+}
+
+fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let (mean_a, mean_b) = (mean(a), mean(b));
+    let product = |x: &[f64], mean_x: f64, y: &[f64], mean_y: f64| -> f64 {
+        x.iter().zip(y).map(|(x, y)| (x - mean_x) * (y - mean_y)).sum()
+    };
+    let spread = (product(a, mean_a, a, mean_a) * product(b, mean_b, b, mean_b)).sqrt();
+    if spread > 0.0 { product(a, mean_a, b, mean_b) / spread } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_on_the_density_match_and_others_stray() {
+        let values = (0..64 * 64).map(|i| if i % 64 < 16 { 1.0 } else { 0.0 }).collect();
+        let density = Density::new(64, 64, values).unwrap();
+        let grid = |right: f64| -> Vec<f64> {
+            (0..32 * 32).flat_map(|i| [f64::from(i % 32) / 32.0 * right, f64::from(i / 32) / 32.0]).collect()
+        };
+        let good = density_match(&grid(0.25), &density, 0.02).unwrap();
+        assert!(good.correlation > 0.99 && good.strays == 0, "{good:?}");
+        let bad = density_match(&grid(1.0), &density, 0.02).unwrap();
+        // Columns from 0.25 + 3 · 0.02 on: 22 of 32.
+        assert!(bad.correlation < 0.5 && (21..=23).contains(&(bad.strays / 32)), "{bad:?}");
+    }
+}

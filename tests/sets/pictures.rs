@@ -1,0 +1,93 @@
+//! Pictures from files: depth, alpha, tone, inks.
+
+use fsot::{Config, ConfigError, Density, Inks, PictureError, Tone};
+use image::{DynamicImage, GrayImage, ImageBuffer, Luma, LumaA, Rgb, RgbImage, Rgba, RgbaImage};
+
+use crate::optimised;
+
+#[test]
+fn luminance_is_linear() {
+    let picture: DynamicImage = GrayImage::from_vec(3, 1, vec![0, 188, 255]).unwrap().into();
+    let dark = Density::from_picture(&picture, Tone::Dark).unwrap();
+    // sRGB 188 is half of the light.
+    for (value, expected) in dark.values().iter().zip([1.0, 0.5, 0.0]) {
+        assert!((value - expected).abs() < 0.005, "{:?}", dark.values());
+    }
+    let bright = Density::from_picture(&picture, Tone::Bright).unwrap();
+    assert!((bright.values()[1] - 0.5).abs() < 0.005 && bright.values()[2] == 1.0);
+    let green: DynamicImage = RgbImage::from_pixel(1, 1, Rgb([0, 255, 0])).into();
+    assert!((Density::from_picture(&green, Tone::Bright).unwrap().mass() - 0.7152).abs() < 1e-6);
+}
+
+#[test]
+fn sixteen_bits_alpha_and_floats_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let deep = ImageBuffer::<Luma<u16>, _>::from_fn(1, 5, |_, y| Luma([y as u16 * 0x3fff]));
+    deep.save(folder.path().join("deep.png")).unwrap();
+    let deep = Density::open(folder.path().join("deep.png"), Tone::Dark).unwrap();
+    assert_eq!(deep.size(), [1, 5]);
+    assert!(deep.values().is_sorted_by(|a, b| a > b) && deep.values()[0] == 1.0);
+
+    let clear = ImageBuffer::<LumaA<u8>, _>::from_fn(2, 1, |x, _| LumaA([0, if x == 0 { 0 } else { 128 }]));
+    clear.save(folder.path().join("clear.png")).unwrap();
+    let clear = Density::open(folder.path().join("clear.png"), Tone::Dark).unwrap();
+    assert!(clear.values()[0] == 0.0 && (clear.values()[1] - 128.0 / 255.0).abs() < 1e-6);
+
+    let light = ImageBuffer::<Rgb<f32>, _>::from_fn(2, 1, |x, _| Rgb([4.0 * x as f32; 3]));
+    light.save(folder.path().join("light.exr")).unwrap();
+    let light = Density::open(folder.path().join("light.exr"), Tone::Bright).unwrap();
+    assert!(light.values()[0] == 0.0 && (light.values()[1] - 4.0).abs() < 1e-6);
+}
+
+#[test]
+fn pictures_without_ink_are_refused() {
+    let (black, white) = (GrayImage::new(3, 2), GrayImage::from_pixel(3, 2, Luma([255])));
+    let clear: DynamicImage = RgbaImage::from_pixel(3, 2, Rgba([0, 0, 0, 0])).into();
+    let none = ConfigError::NoDensity { width: 3, height: 2 };
+    assert_eq!(Density::from_picture(&black.into(), Tone::Bright), Err(none.clone()));
+    assert_eq!(Density::from_picture(&white.clone().into(), Tone::Dark), Err(none.clone()));
+    assert_eq!(Density::from_picture(&clear, Tone::Dark), Err(none.clone()));
+    assert_eq!(Inks::from_picture(&white.into()), Err(none.clone()));
+    assert_eq!(Inks::from_picture(&clear), Err(none));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("note.png");
+    std::fs::write(&path, "no picture").unwrap();
+    for path in [path, folder.path().join("missing.png")] {
+        let error = Inks::open(&path).unwrap_err();
+        assert!(matches!(error, PictureError::Read { .. }));
+        assert!(error.to_string().ends_with("give a PNG or EXR file"), "{error}");
+    }
+}
+
+#[test]
+fn inks_make_up_the_colour() {
+    let colours = [[255, 0, 0], [0, 0, 255], [128, 128, 128], [255, 255, 255]];
+    let picture = RgbImage::from_fn(4, 1, |x, _| Rgb(colours[x as usize]));
+    let inks = Inks::from_picture(&picture.into()).unwrap();
+    let of = |ink: usize| inks.density(ink).unwrap().values().to_vec();
+    assert_eq!(of(0), [0.0, 1.0, 0.0, 0.0]); // cyan takes red away
+    assert_eq!(of(1), [1.0, 1.0, 0.0, 0.0]);
+    assert_eq!(of(2), [1.0, 0.0, 0.0, 0.0]);
+    assert!((of(3)[2] - 0.784).abs() < 0.001 && of(3)[0] == 0.0);
+    let counts = inks.counts(1000);
+    assert_eq!(counts.iter().sum::<usize>(), 1000);
+    assert_eq!(Config::color_stippling(1000, &inks).terms.len(), 15);
+    // Grey has one ink, and one class.
+    let grey = Inks::from_picture(&RgbImage::from_pixel(2, 2, Rgb([90; 3])).into()).unwrap();
+    assert_eq!((grey.counts(10), grey.density(0)), ([0, 0, 0, 10], None));
+    assert_eq!(Config::color_stippling(10, &grey).terms.len(), 1);
+}
+
+#[test]
+fn dots_of_an_ink_stay_where_it_is() {
+    let picture = RgbImage::from_fn(16, 8, |x, _| if x < 8 { Rgb([255, 0, 0]) } else { Rgb([0, 255, 255]) });
+    let inks = Inks::from_picture(&picture.into()).unwrap();
+    let points = optimised(Config::color_stippling(600, &inks), 500);
+    let [cyan, magenta, yellow, _] = inks.counts(600);
+    assert_eq!([cyan, magenta, yellow], [200; 3]);
+    for (label, dots) in points.chunks_exact(400).enumerate() {
+        let right = dots.chunks_exact(2).filter(|dot| dot[0] > 0.5).count();
+        let expected = if label == 0 { 200 } else { 0 };
+        assert!(right.abs_diff(expected) <= 8, "{label}: {right}");
+    }
+}
