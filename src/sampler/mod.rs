@@ -8,15 +8,34 @@
 //! * [`WhiteNoise`] is plain Monte Carlo, the yardstick of every ratio;
 //! * [`OwenSobol`] is the strongest sampler that knows nothing of its neighbours.
 
+mod anneal;
+mod dither;
+mod fast;
+mod keys;
+mod pattern;
+mod permute;
 mod sobol;
+mod stbn;
+mod stratified;
 mod table;
+mod void_cluster;
 mod white;
 
+pub use anneal::Cooling;
+pub use dither::DitherMask;
+pub use fast::Fast;
+pub use keys::ScramblingKeys;
+pub use pattern::{Pattern, Shifted};
+pub use permute::{SeedPermutation, histogram_sampling};
 pub use sobol::OwenSobol;
+pub use stbn::Stbn;
+pub use stratified::stratified;
 pub use table::TableSampler;
 pub use white::WhiteNoise;
 
-use crate::lattice::Site;
+use crate::error::ConfigError;
+use crate::lattice::{Extent, Site};
+use crate::table::SampleTable;
 
 /// Random numbers of a renderer, as a pure function of where they are used.
 pub trait Sampler: Sync {
@@ -47,6 +66,32 @@ fn mixed(seed: u64, words: &[u64]) -> u64 {
     })
 }
 
+/// Checks the extent of a table that has one sample per pixel by construction.
+fn one_sample(extent: &Extent, dims: usize) -> Result<(), ConfigError> {
+    extent.validate(dims)?;
+    if extent.spp > 1 {
+        let expected = "of 1: the method arranges one sample per pixel";
+        return Err(ConfigError::OutOfRange { name: "spp", value: extent.spp as f64, expected });
+    }
+    Ok(())
+}
+
+/// `1 / sigma²` of a similarity between values.
+fn steepness(sigma_value: f64) -> Result<f32, ConfigError> {
+    let steepness = (sigma_value * sigma_value).recip() as f32;
+    if sigma_value > 0.0 && steepness > 0.0 && steepness.is_finite() {
+        return Ok(steepness);
+    }
+    let expected = "above 0, neither tiny nor huge: the papers use 1";
+    Err(ConfigError::OutOfRange { name: "sigma_value", value: sigma_value, expected })
+}
+
+/// The table in which site `i` has the value `ids[i]` of `[id][dim]`.
+fn arranged(extent: &Extent, dims: usize, values: &[f32], ids: &[u32]) -> SampleTable {
+    let value = |&id: &u32| &values[id as usize * dims..][..dims];
+    SampleTable::trusted(*extent, dims, ids.iter().flat_map(value).copied().collect())
+}
+
 #[cfg(test)]
 mod tests {
     use rand::seq::SliceRandom;
@@ -54,8 +99,6 @@ mod tests {
     use rand_xoshiro::Xoshiro256PlusPlus;
 
     use super::*;
-    use crate::lattice::Extent;
-    use crate::table::SampleTable;
 
     const EXTENT: Extent = Extent { frames: 2, height: 3, width: 5, spp: 2 };
 
