@@ -188,7 +188,7 @@ mod tests {
     fn a_point_of_r2_is_where_its_author_says() {
         let r2 = Pattern::kronecker(2, 2).unwrap();
         // Roberts 2018: 1/g and 1/g² of g = 1.32471795724474602596.
-        assert_eq!(point(&r2, 1), [0.754_877_67, 0.569_840_3]);
+        assert_eq!(point(&r2, 1), [0.754_877_7, 0.569_840_3]);
         let golden = Pattern::kronecker(2, 1).unwrap();
         assert_eq!(point(&golden, 1), [0.618_034]);
     }

@@ -7,7 +7,8 @@ use crate::common::tile;
 
 #[test]
 fn the_number_of_threads_changes_nothing() {
-    let makers: [(&str, fn(u64) -> SampleTable); 6] = [
+    type Maker = fn(u64) -> SampleTable;
+    let makers: [(&str, Maker); 6] = [
         ("dither", |seed| {
             let mut mask = DitherMask { seed, ..DitherMask::new(tile(1, 48, 1), 3) };
             mask.cooling.sweeps = 20;

@@ -61,12 +61,12 @@ impl NullaryFnOnce for Swaps<'_> {
             })
             .collect();
         let mut around = vec![0.0; patch.ids.len() * components];
-        for frame in 0..patch.frames {
+        for (frame, offsets) in offsets.iter().enumerate() {
             for row in 0..patch.rows {
                 for column in 0..patch.columns {
                     let at = patch.at(frame, row, column);
                     let sums = &mut around[at * components..][..components];
-                    for &(offset, weight) in &offsets[frame] {
+                    for &(offset, weight) in offsets {
                         add(sums, weight, vector(patch.ids[at.wrapping_add_signed(offset)]));
                     }
                 }

@@ -131,7 +131,7 @@ impl Work {
     /// Two different movable sites of one frame, or the same twice.
     #[inline(always)]
     pub fn pair(&mut self, patch: &Patch) -> (usize, [[usize; 2]; 2]) {
-        let below = |bits: u64, count: usize| ((bits & 0xffff_ffff) * count as u64 >> 32) as usize;
+        let below = |bits: u64, count: usize| (((bits & 0xffff_ffff) * count as u64) >> 32) as usize;
         let area = patch.rows * patch.columns;
         let bits: u64 = self.generator.random();
         let frame = match patch.frames {

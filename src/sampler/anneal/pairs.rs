@@ -159,11 +159,11 @@ impl<E: Energy, const D: usize> NullaryFnOnce for Swaps<'_, E, D> {
             })
             .collect();
         let mut own = vec![0.0; patch.ids.len()];
-        for frame in 0..patch.frames {
+        for (frame, runs) in runs.iter().enumerate() {
             for row in 0..patch.rows {
                 for column in 0..patch.columns {
                     let at = patch.at(frame, row, column);
-                    own[at] = field.energy(&runs[frame], at, at);
+                    own[at] = field.energy(runs, at, at);
                 }
             }
         }
