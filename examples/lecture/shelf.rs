@@ -105,12 +105,12 @@ impl Shelf {
             }
             Maker::Stbn => {
                 let mut mask = Stbn { seed, ..Stbn::new(extent, dims) };
-                mask.cooling.sweeps = sweeps(300);
+                mask.cooling.sweeps = sweeps(100);
                 mask.table()?
             }
             Maker::Fast => {
                 let mut table = Fast { seed, ..Fast::new(extent, dims) };
-                table.cooling.sweeps = sweeps(if frames > 1 { 250 } else { 2000 });
+                table.cooling.sweeps = sweeps(if frames > 1 { 150 } else { 2000 });
                 table.table()?
             }
             Maker::Ours => ours(Config { seed, ..Config::new(extent, dims) }, effort)?,
@@ -134,7 +134,7 @@ impl Shelf {
 /// Our tables, with the optimiser's defaults: about as much work for every shape.
 fn ours(config: Config, effort: f64) -> Result<SampleTable, Failure> {
     let Extent { frames, spp, .. } = config.extent;
-    let slices = if frames > 1 { 2048.0 } else { 8192.0 } * effort / spp as f64;
+    let slices = if frames > 1 { 1024.0 } else { 8192.0 } * effort / spp as f64;
     let mut optimizer = Optimizer::new(config)?;
     optimizer.run(Until::SlicesPerClass(slices.ceil() as u64), |_| ControlFlow::Continue(()))?;
     Ok(optimizer.into_table())

@@ -251,3 +251,6 @@ pub(super) fn sum(row: [f32; LANES]) -> f32 {
     let four = [eight[0] + eight[4], eight[1] + eight[5], eight[2] + eight[6], eight[3] + eight[7]];
     (four[0] + four[2]) + (four[1] + four[3])
 }
+
+#[cfg(test)]
+mod tests;
