@@ -10,8 +10,8 @@ use crate::canvas::{Canvas, LINE, MARGIN, grey};
 use crate::contenders::Contender;
 use crate::measure::Setting;
 
-/// Least width of a picture on the sheet.
-const SIDE: usize = 256;
+/// Least width of a picture on the sheet: room for every name.
+const SIDE: usize = 352;
 const COLUMNS: usize = 5;
 
 /// One cell per sampler: the last frame, its filtered error, its spectrum.
@@ -22,14 +22,18 @@ pub fn draw(setting: &Setting, spp: u32, shown: &[(Contender, Film, f64)]) -> Re
     let (step_x, step_y) = (cell + MARGIN, 3 * (height * zoom + gap) + 2 * LINE + MARGIN);
     let columns = COLUMNS.min(shown.len());
     let page = MARGIN + columns * step_x;
-    let mut out = Canvas::new(page, 3 * LINE + MARGIN + shown.len().div_ceil(COLUMNS) * step_y);
+    let mut out = Canvas::new(page, 4 * LINE + MARGIN + shown.len().div_ceil(COLUMNS) * step_y);
     let last = setting.scene.frames - 1;
     let frames = if last > 0 { ", last frame" } else { "" };
     let title = format!("{}{frames}, {spp} spp; ratio of the error to white noise", setting.scene.name);
     out.write([MARGIN, MARGIN], &title, page - MARGIN);
-    let legend =
-        "rendered / error after the filter, grey = none / spectrum of the error, middle = low frequency";
-    out.write([MARGIN, MARGIN + LINE], legend, page - MARGIN);
+    let legend = [
+        "rows: rendered; its error after the filter, grey = none;",
+        "spectrum of the error, middle = low frequency",
+    ];
+    for (line, text) in legend.into_iter().enumerate() {
+        out.write([MARGIN, MARGIN + (line + 1) * LINE], text, page - MARGIN);
+    }
 
     let reference = &setting.reference;
     let noisy = reference.mean.values().iter().zip(reference.variance.values()).filter(|pair| *pair.1 > 0.0);
@@ -44,7 +48,7 @@ pub fn draw(setting: &Setting, spp: u32, shown: &[(Contender, Film, f64)]) -> Re
     let three = 3.0 * (mean / f64::from(spp)).sqrt().max(1e-12);
 
     for (i, (contender, film, ratio)) in shown.iter().enumerate() {
-        let (x, y) = (MARGIN + i % COLUMNS * step_x, 3 * LINE + MARGIN + i / COLUMNS * step_y);
+        let (x, y) = (MARGIN + i % COLUMNS * step_x, 4 * LINE + MARGIN + i / COLUMNS * step_y);
         out.write([x, y], contender.name(), cell);
         out.write([x, y + LINE], &format!("{ratio:.3}"), cell);
         let error = setting.error(film)?;

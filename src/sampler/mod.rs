@@ -1,12 +1,27 @@
 //! Who hands a renderer its random numbers.
 //!
 //! A [`Sampler`] is asked by (frame, pixel, sample, dimension), in any order and from any thread, and always gives
-//! the same answer to the same question (the contract of pbrt-v4's samplers, without their hidden state). A
-//! sample does not depend on how many samples follow it, so every sampler here is progressive.
+//! the same answer to the same question (the contract of pbrt-v4's samplers, without their hidden state). It is not
+//! told how many samples there will be; where a number of samples was chosen beforehand, fewer of them are a worse set.
 //!
 //! * [`TableSampler`] reads an optimised [`SampleTable`](crate::SampleTable);
 //! * [`WhiteNoise`] is plain Monte Carlo, the yardstick of every ratio;
 //! * [`OwenSobol`] is the strongest sampler that knows nothing of its neighbours.
+//!
+//! The samplers of the literature that filtered sliced optimal transport is compared with are here as well, each from
+//! its paper's description. Most are recipes for a table:
+//!
+//! | recipe | arranges | after |
+//! |---|---|---|
+//! | [`stratified`] | nothing: jittered pixels | Cook 1986 |
+//! | [`Shifted`] [`Pattern`] | nothing: a lattice, toroidally shifted per pixel | Cranley and Patterson 1976 |
+//! | [`DitherMask`] | unlike values at near pixels | Georgiev and Fajardo 2016 |
+//! | [`ScramblingKeys`] | unlike errors at near pixels | Heitz et al. 2019 |
+//! | [`SeedPermutation`], [`histogram_sampling`] | rendered values by a mask | Heitz and Belcour 2019 |
+//! | [`Stbn`] | unlike values in space and in time | Wolfe et al. 2022 |
+//! | [`Fast`] | the energy distance under a filter | Donnelly et al. 2024 |
+//!
+//! The same seed gives the same table at any number of threads, and on any platform where square roots are exact.
 
 mod anneal;
 mod dither;
@@ -109,6 +124,10 @@ mod tests {
         check("shifted table", &TableSampler::new(&table).shifted(Site { frame: 1, y: 2, x: 4 }));
         check("white noise", &WhiteNoise::new(1));
         check("Owen-Sobol'", &OwenSobol::new(1));
+        check("shifted lattice", &Shifted::new(Pattern::korobov(4, 3).unwrap(), WhiteNoise::new(1)));
+        let mask =
+            SampleTable::white_noise(Extent { frames: 1, height: 8, width: 16, spp: 1 }, 1, 3).unwrap();
+        check("permuted seeds", &SeedPermutation::new([64, 64], &mask, 1).unwrap());
     }
 
     #[test]
