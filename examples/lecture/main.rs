@@ -39,13 +39,16 @@ struct Arguments {
     /// Small tables, pictures and few scenes: a check that everything works, whose figures mean little.
     #[arg(long)]
     quick: bool,
+    /// Samples per pixel to compare [default: 1 4 9 16; 1 4 if quick].
+    #[arg(long, num_args = 1.., value_parser = clap::value_parser!(u32).range(1..=64))]
+    spp: Vec<u32>,
     /// Names every random number of tables and renderings.
     #[arg(long, default_value_t = 0)]
     seed: u64,
 }
 
 /// How much is done.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct Scale {
     /// Side of the tables, in pixels.
     tile: usize,
@@ -61,38 +64,42 @@ pub struct Scale {
     repeats: [u64; 2],
     /// Share of the usual work on tables.
     effort: f64,
-    spps: &'static [u32],
+    spps: Vec<u32>,
     still_scenes: &'static [&'static str],
     animated_scenes: &'static [&'static str],
 }
 
-const FULL: Scale = Scale {
-    tile: 64,
-    tile_frames: 16,
-    still: 128,
-    animated: 64,
-    frames: 24,
-    reference_spp: 1024,
-    repeats: [4, 2],
-    effort: 1.0,
-    spps: &[1, 4, 9, 16],
-    still_scenes: &["soft_shadow", "defocus", "glossy", "ambient_occlusion"],
-    animated_scenes: &["soft_shadow", "ambient_occlusion", "animated_soft_shadow"],
-};
+fn full() -> Scale {
+    Scale {
+        tile: 64,
+        tile_frames: 16,
+        still: 128,
+        animated: 64,
+        frames: 24,
+        reference_spp: 1024,
+        repeats: [4, 2],
+        effort: 1.0,
+        spps: vec![1, 4, 9, 16],
+        still_scenes: &["soft_shadow", "defocus", "glossy", "ambient_occlusion"],
+        animated_scenes: &["soft_shadow", "ambient_occlusion", "animated_soft_shadow"],
+    }
+}
 
-const QUICK: Scale = Scale {
-    tile: 16,
-    tile_frames: 6,
-    still: 32,
-    animated: 16,
-    frames: 18,
-    reference_spp: 64,
-    repeats: [1, 1],
-    effort: 0.05,
-    spps: &[1, 4],
-    still_scenes: &["soft_shadow", "glossy"],
-    animated_scenes: &["animated_soft_shadow"],
-};
+fn quick() -> Scale {
+    Scale {
+        tile: 16,
+        tile_frames: 6,
+        still: 32,
+        animated: 16,
+        frames: 18,
+        reference_spp: 64,
+        repeats: [1, 1],
+        effort: 0.05,
+        spps: vec![1, 4],
+        still_scenes: &["soft_shadow", "glossy"],
+        animated_scenes: &["animated_soft_shadow"],
+    }
+}
 
 fn main() -> ExitCode {
     match run(&Arguments::parse()) {
@@ -105,16 +112,19 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { out, quick, seed } = arguments;
-    let scale = if *quick { QUICK } else { FULL };
+    let Arguments { out, seed, .. } = arguments;
+    let mut scale = if arguments.quick { quick() } else { full() };
+    if !arguments.spp.is_empty() {
+        scale.spps.clone_from(&arguments.spp);
+    }
     std::fs::create_dir_all(out)
         .map_err(|error| format!("cannot create {}: {error}; choose another --out", out.display()))?;
 
     let style = ProgressStyle::with_template("{elapsed_precise} {bar:30} {pos}/{len} {wide_msg}")?;
     let recipes = Shelf::recipes(&scale)?;
-    let work = recipes.len() + Contender::ALL.len() * trials(&scale).count();
+    let work = recipes.len() + Contender::ALL.len() * trials(&scale).len();
     let progress = ProgressBar::new(work as u64).with_style(style);
-    let mut shelf = Shelf::new(scale, *seed);
+    let mut shelf = Shelf::new(scale.clone(), *seed);
     for recipe in recipes {
         progress.set_message(format!("table: {recipe}"));
         shelf.make(recipe)?;
@@ -155,7 +165,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             .map_err(|error| format!("cannot write {}: {error}; choose another --out", path.display()))?;
     }
     progress.finish_and_clear();
-    report.print(&mut std::io::stdout().lock(), scale.spps)?;
+    report.print(&mut std::io::stdout().lock(), &scale.spps)?;
     let path = out.join("lecture.csv");
     std::fs::write(&path, report.csv())
         .map_err(|error| format!("cannot write {}: {error}; choose another --out", path.display()))?;
@@ -164,11 +174,10 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// What is rendered, in order.
-fn trials(scale: &Scale) -> impl Iterator<Item = (Trial, u32)> + use<> {
-    let spps = scale.spps;
+fn trials(scale: &Scale) -> Vec<(Trial, u32)> {
     let stills = scale.still_scenes.iter().map(|&scene| Trial { scene, animated: false });
     let animations = scale.animated_scenes.iter().map(|&scene| Trial { scene, animated: true });
-    stills.chain(animations).flat_map(move |trial| spps.iter().map(move |&spp| (trial, spp)))
+    stills.chain(animations).flat_map(|trial| scale.spps.iter().map(move |&spp| (trial, spp))).collect()
 }
 
 /// A scene of the gallery.

@@ -73,7 +73,7 @@ impl Shelf {
             add(Maker::Keys, dims, most, 1);
             add(Maker::Stbn, 2, 1, scale.tile_frames);
             add(Maker::Fast, 2, 1, frames);
-            for &spp in scale.spps {
+            for &spp in &scale.spps {
                 add(Maker::Stratified, dims, spp as usize, 1);
                 add(Maker::Ours, dims, spp as usize, 1);
                 if animated {
@@ -88,7 +88,10 @@ impl Shelf {
     pub fn make(&mut self, recipe: Recipe) -> Result<(), Failure> {
         let Recipe { maker, dims, spp, frames } = recipe;
         let Scale { tile, effort, .. } = self.scale;
-        let extent = Extent { frames, height: tile, width: tile, spp };
+        // Ours repeat a quarter of the tile where it would be long in the making; the kernels are far smaller.
+        let long = matches!(maker, Maker::Ours | Maker::OursTaa) && frames > 1 && spp > 1;
+        let side = if long { tile / 2 } else { tile };
+        let extent = Extent { frames, height: side, width: side, spp };
         let seed = self.seed;
         let sweeps = |sweeps: u64| (sweeps as f64 * effort).ceil() as u64;
         let table = match maker {
