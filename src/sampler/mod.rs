@@ -4,7 +4,7 @@
 //! the same answer to the same question (the contract of pbrt-v4's samplers, without their hidden state). It is not
 //! told how many samples there will be; where a number of samples was chosen beforehand, fewer of them are a worse set.
 //!
-//! * [`TableSampler`] reads an optimised [`SampleTable`](crate::SampleTable);
+//! * [`TableSampler`] reads an optimised [`SampleTable`];
 //! * [`WhiteNoise`] is plain Monte Carlo, the yardstick of every ratio;
 //! * [`OwenSobol`] is the strongest sampler that knows nothing of its neighbours.
 //!
