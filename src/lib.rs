@@ -57,6 +57,25 @@
 //! | mu | [`Target`] | measure on `[0, 1]^D`; its law along theta is [`Projected`] |
 //! | N, n | samples of the table, of a subset | |
 //!
+//! # Point sets
+//!
+//! Pixels are one family of classes among others, and the cube one target. [`Config::classes`] makes sets whose labelled
+//! parts and their unions are all uniform, [`Config::progressive`] sequences whose prefixes are, [`Config::stippling`] points as
+//! dense as a picture; [`Classes`] and [`Target`] hold the rest, and [`ClassFamily`] and [`Measure`] whatever is yours.
+//!
+//! ```
+//! use std::ops::ControlFlow;
+//!
+//! use fsot::{Config, Optimizer, Subsets, Target, Until, metrics};
+//!
+//! let mut optimizer = Optimizer::new(Config::classes(&[64, 64], 2, &Subsets::EachAndAll))?;
+//! optimizer.run(Until::SlicesPerClass(1000), |_progress| ControlFlow::Continue(()))?;
+//! let points: Vec<f64> = optimizer.into_table().values().iter().map(|&value| value.into()).collect();
+//! let of_the_first_label = metrics::sliced_w2(&points[..2 * 64], 2, &Target::UniformCube, 64)?;
+//! assert!(of_the_first_label < 0.02);
+//! # Ok::<(), fsot::ConfigError>(())
+//! ```
+//!
 //! # Where it deviates from the papers
 //!
 //! * A sample moves towards the exact *mean of its quantile cell*, not towards a random point of the target: the

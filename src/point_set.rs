@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::class::{Classes, LabelSet, Lengths, PrefixOf};
+use crate::descent::{Descent, Schedule};
 use crate::lattice::Extent;
 use crate::optimizer::Config;
 #[cfg(feature = "render")]
@@ -41,12 +42,13 @@ impl Subsets {
 const MOST_LABELS: usize = 12;
 
 impl Config {
-    /// The defaults for a set of `count` points: these terms, interval domains, barycentric steps.
+    /// The defaults for a set of `count` points: these terms, interval domains, barycentric steps from 1 to 0.02.
     ///
     /// Each step draws 16 directions for every class (for 16 of them, if a term has more), and terms are weighed by what they
     /// pull. 1,000 to 4,000 slices per class make a good set.
     pub fn point_set(count: usize, dims: usize, terms: Vec<Term>) -> Self {
-        Self { terms, ..Self::new(Extent::points(count), dims) }
+        let descent = Descent::Barycentric { rate: Schedule::geometric(1.0, 0.02) };
+        Self { terms, descent, ..Self::new(Extent::points(count), dims) }
     }
 
     /// A set of `counts.len()` classes: `counts[0]` points labelled 0, then `counts[1]` labelled 1, …; each of the

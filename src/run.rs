@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Until {
-    /// After this many slices per pixel and frame (rounded up to whole steps).
+    /// After this many slices per pixel and frame, or per class of a point set (rounded up to whole steps).
     SlicesPerClass(u64),
     /// After this many epochs, of `directions` slices per pixel and frame each.
     Epochs(u64),

@@ -20,7 +20,9 @@ pub struct Term {
     pub target: Target,
     /// The dimensions that this term sees, as a renderer consumes them together.
     pub dims: Vec<usize>,
-    /// Share of the work: the number of slices that touch a sample is proportional to it, in the mean. Positive.
+    /// Share of the work: the number of slices that touch a sample is proportional to it, in the mean. Where no term has
+    /// classes per pixel, as in a point set, every class has its slices in each step, and their pull on a sample is
+    /// proportional to it instead. Positive.
     pub weight: f64,
     /// How its slices move the samples.
     pub role: Role,
@@ -71,7 +73,8 @@ pub struct Slicing {
     /// groups of more than `directions` dimensions and for subsets too large to share directions, such as the whole
     /// table. More sharpens one-dimensional marginals at the cost of all else.
     pub axis_share: f64,
-    /// Slices per step. `None`: a sixteenth of an epoch, where an epoch visits every pixel of every frame once.
+    /// Slices per step. `None`: a sixteenth of an epoch, where an epoch visits every pixel of every frame once; in a point
+    /// set `directions` slices of every class (of 16 classes of a term that has more).
     pub batch_slices: Option<usize>,
 }
 

@@ -20,7 +20,7 @@ fn folder() -> PathBuf {
 /// Rows such as ``| `name` | what for | 0.175 | 0.58 | 0.1 |`` of the page beside the tables.
 fn recorded() -> Vec<(String, Figures)> {
     let page = fs::read_to_string(folder().with_file_name("README.md")).unwrap();
-    let rows = page.lines().filter(|line| line.starts_with("| `") && line.contains("x"));
+    let rows = page.lines().filter(|line| line.starts_with("| `") && line.contains("spp_"));
     rows.map(|row| {
         let cells: Vec<&str> = row.split('|').map(|cell| cell.trim().trim_matches('`')).collect();
         let figure = |cell: usize| cells[cell].parse().unwrap_or_else(|_| panic!("{row}"));

@@ -26,8 +26,10 @@ fn given_and_all_lengths_can_be_had() {
     for lengths in [given, Lengths::Every] {
         let points = optimised(Config::progressive(100, 2, lengths), 1000);
         // White noise: sqrt((1/12) / n) in each direction, about.
-        assert!(distance(&points[..48]) < 0.5 * (1.0_f64 / 12.0 / 24.0).sqrt());
-        assert!(distance(&points) < 0.4 * (1.0_f64 / 12.0 / 100.0).sqrt());
+        for (length, share) in [(24, 0.6), (100, 0.4)] {
+            let (distance, noise) = (distance(&points[..2 * length]), (1.0 / 12.0 / length as f64).sqrt());
+            assert!(distance < share * noise, "{length}: {distance} of {noise}");
+        }
     }
 }
 
