@@ -51,9 +51,11 @@ fn measure(name: &str) -> Figures {
 #[test]
 fn tables_are_as_recorded() {
     let recorded = recorded();
-    for (name, expected) in &recorded {
-        let Figures { filtered, bound, bias } = measure(name);
+    let measured: Vec<Figures> = recorded.iter().map(|(name, _)| measure(name)).collect();
+    for ((name, _), Figures { filtered, bound, bias }) in recorded.iter().zip(&measured) {
         println!("| `{name}` | {filtered:.3} | {bound:.3} | {bias:.2} |");
+    }
+    for ((name, expected), Figures { filtered, bound, bias }) in recorded.iter().zip(&measured) {
         // The last digit of the page; the bias also where a platform rounds a table's integrands otherwise.
         assert!((filtered - expected.filtered).abs() < 1e-3, "{name}: {filtered}");
         assert!((bound - expected.bound).abs() < 1e-3, "{name}: {bound}");

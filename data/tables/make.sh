@@ -14,4 +14,4 @@ make 128x128x1_1spp_2d --frames 1 --width 128 --height 128 --slices-per-class 20
 make 128x128x1_4spp_2d --frames 1 --width 128 --height 128 --spp 4 --slices-per-class 600 --sweeps 120
 make 64x64x1_1spp_4d --frames 1 --dims 4 --slices-per-class 4000 --sweeps 500
 make 64x64x16_1spp_2d_perceptual60 --frames 16 --temporal perceptual:60 --slices-per-class 300 --sweeps 150
-make 64x64x16_1spp_2d_ema0.1 --frames 16 --temporal ema:0.1 --slices-per-class 60 --sweeps 60
+make 64x64x16_1spp_2d_ema --frames 16 --temporal ema:0.1 --slices-per-class 60 --sweeps 60
