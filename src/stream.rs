@@ -26,6 +26,12 @@ pub(crate) enum Purpose {
     Sweep,
     /// Parameters of one test integrand.
     Integrands = 32,
+    /// The swaps of one region in one round of an annealing.
+    Swaps = 48,
+    /// Where the regions of a round lie.
+    Regions,
+    /// The arrangement that an annealing starts from, and other starts of the compared samplers.
+    Start,
 }
 
 /// The generator with this name.

@@ -44,9 +44,39 @@ pub fn render(
     resolution: [usize; 2],
     spp: u32,
 ) -> Result<Film, RenderError> {
+    let shape = [scene.frames, resolution[0], resolution[1]];
+    shoot(scene, sampler, resolution, spp, 0, Film::black(shape)?)
+}
+
+/// Renders one frame alone, as a film of one frame: the picture that [`render`] puts there.
+///
+/// # Errors
+/// A resolution or a number of samples of 0; a frame that the scene does not have.
+pub fn render_frame(
+    scene: &Scene,
+    frame: usize,
+    sampler: &dyn Sampler,
+    resolution: [usize; 2],
+    spp: u32,
+) -> Result<Film, RenderError> {
+    super::error::not_empty("frames", scene.frames)?;
+    if frame >= scene.frames {
+        return Err(RenderError::NoSuchFrame { frame, frames: scene.frames });
+    }
+    shoot(scene, sampler, resolution, spp, frame, Film::black([1, resolution[0], resolution[1]])?)
+}
+
+/// Fills a film with the frames from `first` on.
+fn shoot(
+    scene: &Scene,
+    sampler: &dyn Sampler,
+    resolution: [usize; 2],
+    spp: u32,
+    first: usize,
+    mut film: Film,
+) -> Result<Film, RenderError> {
     super::error::not_empty("spp", spp as usize)?;
-    let mut film = Film::black([scene.frames, resolution[0], resolution[1]])?;
-    for_each_pixel(scene, resolution, film.values_mut(), |still, pixel, site, value| {
+    for_each_pixel_from(scene, first, resolution, film.values_mut(), |still, pixel, site, value| {
         let mut sum = 0.0;
         for sample in 0..spp {
             sum += still.estimate(pixel, resolution, &mut |group| {
@@ -65,8 +95,19 @@ pub(super) fn for_each_pixel<V: Send>(
     values: &mut [V],
     shade: impl Fn(&Scene, &Pixel, Site, &mut V) + Sync,
 ) {
+    for_each_pixel_from(scene, 0, resolution, values, shade);
+}
+
+/// The same for the frames from `first` on.
+fn for_each_pixel_from<V: Send>(
+    scene: &Scene,
+    first: usize,
+    resolution: [usize; 2],
+    values: &mut [V],
+    shade: impl Fn(&Scene, &Pixel, Site, &mut V) + Sync,
+) {
     let [height, width] = resolution;
-    for (frame, image) in values.chunks_exact_mut(height * width).enumerate() {
+    for (frame, image) in (first..).zip(values.chunks_exact_mut(height * width)) {
         let still = scene.at_frame(frame);
         image.par_chunks_exact_mut(width).enumerate().for_each(|(y, row)| {
             for (x, value) in row.iter_mut().enumerate() {

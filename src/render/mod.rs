@@ -9,9 +9,11 @@
 
 mod bsdf;
 mod camera;
+mod denoise;
 mod error;
 mod film;
 mod gallery;
+mod guides;
 mod image_metrics;
 mod integrate;
 #[cfg(test)]
@@ -24,10 +26,12 @@ mod shape;
 
 pub use bsdf::Material;
 pub use camera::{Camera, Lens};
+pub use denoise::Denoiser;
 pub use error::RenderError;
 pub use film::Film;
+pub use guides::{Guide, Guides};
 pub use image_metrics::{Comparison, Figure, ImageFilter, compare};
-pub use integrate::render;
+pub use integrate::{render, render_frame};
 pub use light::Light;
 pub use needs::demand;
 pub use reference::Reference;

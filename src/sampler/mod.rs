@@ -1,22 +1,56 @@
 //! Who hands a renderer its random numbers.
 //!
 //! A [`Sampler`] is asked by (frame, pixel, sample, dimension), in any order and from any thread, and always gives
-//! the same answer to the same question (the contract of pbrt-v4's samplers, without their hidden state). A
-//! sample does not depend on how many samples follow it, so every sampler here is progressive.
+//! the same answer to the same question (the contract of pbrt-v4's samplers, without their hidden state). It is not
+//! told how many samples there will be; where a number of samples was chosen beforehand, fewer of them are a worse set.
 //!
-//! * [`TableSampler`] reads an optimised [`SampleTable`](crate::SampleTable);
+//! * [`TableSampler`] reads an optimised [`SampleTable`];
 //! * [`WhiteNoise`] is plain Monte Carlo, the yardstick of every ratio;
 //! * [`OwenSobol`] is the strongest sampler that knows nothing of its neighbours.
+//!
+//! The samplers of the literature that filtered sliced optimal transport is compared with are here as well, each from
+//! its paper's description. Most are recipes for a table:
+//!
+//! | recipe | arranges | after |
+//! |---|---|---|
+//! | [`stratified`] | nothing: jittered pixels | Cook 1986 |
+//! | [`Shifted`] [`Pattern`] | nothing: a lattice, toroidally shifted per pixel | Cranley and Patterson 1976 |
+//! | [`DitherMask`] | unlike values at near pixels | Georgiev and Fajardo 2016 |
+//! | [`ScramblingKeys`] | unlike errors at near pixels | Heitz et al. 2019 |
+//! | [`SeedPermutation`], [`histogram_sampling`] | rendered values by a mask | Heitz and Belcour 2019 |
+//! | [`Stbn`] | unlike values in space and in time | Wolfe et al. 2022 |
+//! | [`Fast`] | the energy distance under a filter | Donnelly et al. 2024 |
+//!
+//! The same seed gives the same table at any number of threads, and on any platform where square roots are exact.
 
+mod anneal;
+mod dither;
+mod fast;
+mod keys;
+mod pattern;
+mod permute;
 mod sobol;
+mod stbn;
+mod stratified;
 mod table;
+mod void_cluster;
 mod white;
 
+pub use anneal::Cooling;
+pub use dither::DitherMask;
+pub use fast::Fast;
+pub use keys::ScramblingKeys;
+pub use pattern::{Pattern, Shifted};
+pub use permute::{SeedPermutation, histogram_sampling};
 pub use sobol::OwenSobol;
+pub use stbn::Stbn;
+pub use stratified::stratified;
 pub use table::TableSampler;
 pub use white::WhiteNoise;
 
-use crate::lattice::Site;
+use crate::error::ConfigError;
+use crate::lattice::{Extent, Site};
+use crate::table::SampleTable;
 
 /// Random numbers of a renderer, as a pure function of where they are used.
 pub trait Sampler: Sync {
@@ -47,6 +81,32 @@ fn mixed(seed: u64, words: &[u64]) -> u64 {
     })
 }
 
+/// Checks the extent of a table that has one sample per pixel by construction.
+fn one_sample(extent: &Extent, dims: usize) -> Result<(), ConfigError> {
+    extent.validate(dims)?;
+    if extent.spp > 1 {
+        let expected = "of 1: the method arranges one sample per pixel";
+        return Err(ConfigError::OutOfRange { name: "spp", value: extent.spp as f64, expected });
+    }
+    Ok(())
+}
+
+/// `1 / sigma²` of a similarity between values.
+fn steepness(sigma_value: f64) -> Result<f32, ConfigError> {
+    let steepness = (sigma_value * sigma_value).recip() as f32;
+    if sigma_value > 0.0 && steepness > 0.0 && steepness.is_finite() {
+        return Ok(steepness);
+    }
+    let expected = "above 0, neither tiny nor huge: the papers use 1";
+    Err(ConfigError::OutOfRange { name: "sigma_value", value: sigma_value, expected })
+}
+
+/// The table in which site `i` has the value `ids[i]` of `[id][dim]`.
+fn arranged(extent: &Extent, dims: usize, values: &[f32], ids: &[u32]) -> SampleTable {
+    let value = |&id: &u32| &values[id as usize * dims..][..dims];
+    SampleTable::trusted(*extent, dims, ids.iter().flat_map(value).copied().collect())
+}
+
 #[cfg(test)]
 mod tests {
     use rand::seq::SliceRandom;
@@ -54,8 +114,6 @@ mod tests {
     use rand_xoshiro::Xoshiro256PlusPlus;
 
     use super::*;
-    use crate::lattice::Extent;
-    use crate::table::SampleTable;
 
     const EXTENT: Extent = Extent { frames: 2, height: 3, width: 5, spp: 2 };
 
@@ -66,6 +124,10 @@ mod tests {
         check("shifted table", &TableSampler::new(&table).shifted(Site { frame: 1, y: 2, x: 4 }));
         check("white noise", &WhiteNoise::new(1));
         check("Owen-Sobol'", &OwenSobol::new(1));
+        check("shifted lattice", &Shifted::new(Pattern::korobov(4, 3).unwrap(), WhiteNoise::new(1)));
+        let mask =
+            SampleTable::white_noise(Extent { frames: 1, height: 8, width: 16, spp: 1 }, 1, 3).unwrap();
+        check("permuted seeds", &SeedPermutation::new([64, 64], &mask, 1).unwrap());
     }
 
     #[test]
