@@ -101,9 +101,9 @@ pub enum ConfigError {
     #[error("class {member} of \"{name}\" gives sample {sample} weight {weight}: {problem}")]
     CustomClass {
         /// Name of the family.
-        name: String,
+        name: Box<str>,
         /// Number of the class.
-        member: usize,
+        member: u32,
         /// The sample.
         sample: u32,
         /// Its weight.

@@ -50,9 +50,8 @@ impl<'a> FromAtlas<'a> {
     #[inline(always)]
     pub(crate) fn cell_means(&self, means: &mut [Row]) {
         let cells = means.len();
-        for lane in 0..self.count {
-            self.laws[lane]
-                .for_each_cell(cells, |cell, mean| means[cell][lane] = (mean - self.centre[lane]) as f32);
+        for (lane, (law, centre)) in self.laws.iter().zip(&self.centre).enumerate().take(self.count) {
+            law.for_each_cell(cells, |cell, mean| means[cell][lane] = (mean - centre) as f32);
         }
     }
 }

@@ -99,8 +99,8 @@ impl Listed {
             check_weight("the weight of a class", member.weight)?;
             for &(sample, weight) in &member.samples {
                 let refused = |problem| {
-                    let name = family.name().to_owned();
-                    Err(ConfigError::CustomClass { name, member: index, sample, weight, problem })
+                    let (name, member) = (family.name().into(), index as u32);
+                    Err(ConfigError::CustomClass { name, member, sample, weight, problem })
                 };
                 match seen.get_mut(sample as usize) {
                     None => return refused("name samples of the table only"),
