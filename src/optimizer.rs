@@ -224,12 +224,12 @@ impl Optimizer {
             // Also one that is broken off is not repeated.
             *swept += 1;
         }
-        if step % (cramer::STEPS / BALANCES) == 0 {
+        if step.is_multiple_of(cramer::STEPS / BALANCES) {
             // What has moved the table since: a balance, slices, a caller.
             sweeper.load(points);
         }
         let pulls = sweeper.step(step, rate, domains, points);
-        if (step + 1) % (cramer::STEPS / BALANCES) == 0 {
+        if (step + 1).is_multiple_of(cramer::STEPS / BALANCES) {
             let turn = *swept * BALANCES as u64 + (step / (cramer::STEPS / BALANCES)) as u64;
             engine.pull(objective, (*seed, turn, Pick::Each(Role::Balance)), points, pull);
             if pull.slices > 0 {

@@ -119,9 +119,8 @@ impl Pairs {
         let mut own = [[0.0; LANES]; MOST];
         let mut sums = [[0.0; LANES]; MOST];
         let mut total = [if planes.is_partial() { 0.0 } else { self.total }; LANES];
-        for k in 0..dims {
-            let row = planes.row(self.dims[k], run.sample, run.frame, run.y);
-            own[k] = lanes(row, margin + run.x);
+        for (own, &dim) in own.iter_mut().zip(&self.dims) {
+            *own = lanes(planes.row(dim, run.sample, run.frame, run.y), margin + run.x);
         }
         for span in &self.spans {
             let wrap = |at: usize, len: usize| if at >= len { at - len } else { at };
@@ -130,8 +129,8 @@ impl Pairs {
             for sample in 0..self.extent.spp {
                 let first = margin + run.x - self.reach;
                 let mut others: [&[f32]; MOST] = [&[]; MOST];
-                for k in 0..dims {
-                    others[k] = &planes.row(self.dims[k], sample, frame, y)[first..];
+                for (others, &dim) in others.iter_mut().zip(&self.dims) {
+                    *others = &planes.row(dim, sample, frame, y)[first..];
                 }
                 let demanded = planes.demanded(sample, frame, y).map(|row| &row[first..]);
                 for tap in &self.taps[span.taps.clone()] {
