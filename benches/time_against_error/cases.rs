@@ -29,7 +29,7 @@ pub fn full(published_seconds: f64) -> Vec<Case> {
         Case { published_seconds, published_program_us: Some(16.0), ..still("static 64x64x1", 64, 1) },
         Case {
             least_effort: 2,
-            longest_seconds: 20.0,
+            longest_seconds: 12.0,
             published_seconds: 2.0 * published_seconds,
             published_program_us: Some(175.0),
             ..animated("animated 64x64x10", 64, 10)

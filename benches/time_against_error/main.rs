@@ -98,13 +98,17 @@ fn main() -> Result<(), Failure> {
     if cases.is_empty() {
         return Ok(()); // the filter is meant for another bench
     }
-    let outcomes = cases.into_iter().map(measure).collect::<Result<Vec<_>, _>>()?;
     fs::create_dir_all(out)?;
-    write_csv(&out.join("time_against_error.csv"), &outcomes)?;
-    chart::write(&out.join("time_against_error.svg"), &outcomes)?;
-    for outcome in &outcomes {
-        speed_up::print(outcome);
-        check(outcome);
+    let mut outcomes = Vec::new();
+    for case in cases {
+        outcomes.push(measure(case)?);
+        // After each case, so that a run that is cut off keeps what it has.
+        write_csv(&out.join("time_against_error.csv"), &outcomes)?;
+        chart::write(&out.join("time_against_error.svg"), &outcomes)?;
+        if let Some(outcome) = outcomes.last() {
+            speed_up::print(outcome);
+            check(outcome);
+        }
     }
     Ok(())
 }
