@@ -190,6 +190,12 @@ impl Objective {
         self.terms.get(term)?.family.taps()
     }
 
+    /// Whether some balance is over parts of a table that another one holds together.
+    pub(crate) fn balances_are_nested(&self) -> bool {
+        let balances = || self.terms.iter().filter(|term| term.spec.role == Role::Balance);
+        balances().any(|term| term.family.visited() > 1) && balances().any(|term| term.family.visited() == 1)
+    }
+
     /// Slices of lattice terms that a step draws per visited pixel and frame, in the mean; per class where none of the
     /// terms has classes per pixel.
     pub(crate) fn slices_per_class_and_step(&self) -> f64 {

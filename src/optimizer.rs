@@ -213,7 +213,7 @@ impl Optimizer {
 
     /// One step of a sweep. Returns what it pulled.
     fn sweep_step(&mut self, step: usize, rate: f64, balance: f64) -> Result<MeanSquare, ConfigError> {
-        let Self { engine, objective, config, points, pull, sweeper, swept, .. } = self;
+        let Self { objective, config, points, sweeper, swept, .. } = self;
         let Config { domains, seed, sweeps, .. } = config;
         let sweeper = match sweeper {
             Some(sweeper) => sweeper,
@@ -231,12 +231,27 @@ impl Optimizer {
         let pulls = sweeper.step(step, rate, domains, points);
         if (step + 1).is_multiple_of(cramer::STEPS / BALANCES) {
             let turn = *swept * BALANCES as u64 + (step / (cramer::STEPS / BALANCES)) as u64;
-            engine.pull(objective, (*seed, turn, Pick::Each(Role::Balance)), points, pull);
-            if pull.slices > 0 {
-                descent::project(balance, domains, points, pull);
-            }
+            self.balance(turn, balance);
         }
         Ok(pulls)
+    }
+
+    /// Moves the samples `share` of the way along one slice of every class in the role of [`Role::Balance`].
+    fn balance(&mut self, turn: u64, share: f64) {
+        let Self { engine, objective, config, points, pull, .. } = self;
+        engine.pull(objective, (config.seed, turn, Pick::Each(Role::Balance)), points, pull);
+        if pull.slices > 0 {
+            descent::project(share, &config.domains, points, pull);
+        }
+    }
+
+    /// Brings the balances within each other, of frames and of the whole table, to an agreement after the last sweep.
+    fn settle(&mut self, sweeps: u64, share: f64) {
+        if self.objective.balances_are_nested() {
+            for turn in 0..SETTLING_TURNS.min(sweeps.saturating_mul(BALANCES as u64)) {
+                self.balance((self.swept + 1) * BALANCES as u64 + turn, share);
+            }
+        }
     }
 
     /// Takes steps until `until`, or until `observe` breaks off. The table keeps what was reached.
@@ -297,6 +312,9 @@ impl Optimizer {
                 report.ended = Ended::Converged;
                 break;
             }
+        }
+        if work.sweeps > 0 && report.ended == Ended::Finished {
+            self.settle(work.sweeps, self.config.balance.at(1.0));
         }
         report.elapsed = begin.elapsed();
         // Buffers are as large as the largest subset, and copies of the table; nobody needs them until the next run.
@@ -371,6 +389,10 @@ impl Optimizer {
 
 /// Turns of the balance per sweep: with one alone, the bias is three times as large.
 const BALANCES: usize = 2;
+
+/// Turns of nested balances after the last sweep, at most as many as the sweeps had. 64×64×10, 200 slices and 100 sweeps: they bring the bias from 0.34 to 0.19 and
+/// the filtered error from 0.1395 to 0.1407; 16 turns bring 0.08 and 0.1412.
+const SETTLING_TURNS: u64 = 8;
 
 /// Slices per pixel and frame from which on it is worth beginning with them.
 const ENOUGH_SLICES: f64 = 64.0;
