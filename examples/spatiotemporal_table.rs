@@ -57,10 +57,12 @@ struct Arguments {
     /// How slices move the samples [default: barycentric].
     #[arg(long, value_enum)]
     optimizer: Option<DescentName>,
-    /// Slices drawn per pixel and frame [default: 320 with --domain torus or --optimizer, 0 otherwise].
+    /// Slices drawn per pixel and frame [default: 320 with --domain torus or --optimizer; otherwise 128 if there are several
+    /// samples per pixel, else 0].
     #[arg(long, conflicts_with = "seconds")]
     slices_per_class: Option<u64>,
-    /// Sweeps over all samples, after the slices; not with --domain torus [default: 100 if there are no slices, else 0].
+    /// Sweeps over all samples, after the slices; not with --domain torus [default: 100 for one sample per pixel, 64 for
+    /// several; 0 with --slices-per-class, --domain torus or --optimizer].
     #[arg(long, conflicts_with = "seconds")]
     sweeps: Option<u64>,
     /// Time for the optimisation alone, instead of an amount of work.
@@ -192,8 +194,15 @@ fn until(arguments: &Arguments) -> Until {
         return Until::Seconds(seconds);
     }
     let slices_only = arguments.optimizer.is_some() || matches!(arguments.domain, DomainName::Torus);
-    let slices_per_class = arguments.slices_per_class.unwrap_or(if slices_only { 320 } else { 0 });
-    let sweeps = arguments.sweeps.unwrap_or(if slices_per_class > 0 { 0 } else { 100 });
+    // With several samples per pixel, sweeps alone leave those of a pixel unlike what their slices want.
+    let (slices, sweeps) = match arguments.spp {
+        _ if slices_only => (320, 0),
+        1 => (0, 100),
+        _ => (128, 64),
+    };
+    let slices_per_class = arguments.slices_per_class.unwrap_or(slices);
+    let alone = arguments.slices_per_class.is_some_and(|slices| slices > 0);
+    let sweeps = arguments.sweeps.unwrap_or(if alone { 0 } else { sweeps });
     Until::Work(Work { slices_per_class, sweeps })
 }
 

@@ -99,6 +99,28 @@ impl Gather<'_> {
         }
     }
 
+    /// Writes the projections of the samples from `first` on along a direction.
+    #[inline(always)]
+    pub(crate) fn project(&self, first: usize, theta: &impl Fn(usize) -> f32, projections: &mut [f32]) {
+        let samples = &self.samples[first..][..projections.len()];
+        if let (&[x, y], [None, None]) = (self.dims, self.cut) {
+            // The common case by itself, without a choice per coordinate.
+            let theta = [theta(0), theta(1)];
+            for (projection, &sample) in projections.iter_mut().zip(samples) {
+                let values = &self.points[sample as usize * self.stride..][..self.stride];
+                *projection = values[x] * theta[0] + values[y] * theta[1];
+            }
+            return;
+        }
+        projections.fill(0.0);
+        for dim in 0..self.dims.len() {
+            let component = theta(dim);
+            for (j, projection) in projections.iter_mut().enumerate() {
+                *projection += self.coordinate(first + j, dim) * component;
+            }
+        }
+    }
+
     /// Coordinate `dim` (of the group) of the subset's `j`th sample, shifted and wrapped where the dimension is
     /// a torus.
     #[inline(always)]

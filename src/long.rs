@@ -140,7 +140,6 @@ pub(crate) fn transport(
     moves: &mut [f32],
 ) -> f64 {
     let (n, dims) = (subset.samples.len(), subset.dims.len());
-    let project = |j: usize| (0..dims).map(|dim| subset.coordinate(j, dim) * theta(dim)).sum::<f32>();
     let LongBuffers { projections, keys, entries, order, starts } = buffers;
     if (RADIX..=LARGEST_RADIX).contains(&n) {
         entries.resize(n.max(entries.len()), 0);
@@ -149,9 +148,10 @@ pub(crate) fn transport(
     projections.resize(n.max(projections.len()), 0.0);
     let (projections, order) = (&mut projections[..n], &mut order[..n]);
     if n >= SHARED {
-        projections.par_iter_mut().enumerate().with_min_len(1 << 12).for_each(|(j, to)| *to = project(j));
+        let parts = projections.par_chunks_mut(1 << 12).enumerate();
+        parts.for_each(|(part, to)| subset.project(part << 12, &theta, to));
     } else {
-        projections.iter_mut().enumerate().for_each(|(j, to)| *to = project(j));
+        subset.project(0, &theta, projections);
     }
     match n {
         0..RADIX => sort_few(projections, keys, order),
@@ -159,19 +159,36 @@ pub(crate) fn transport(
         _ => sort_shared(projections, keys, order),
     }
     let mut squares = 0.0;
-    let displace = |rank: usize, mean: f64| {
-        let position = order[rank] as usize;
-        let mass = weights.map_or(1.0, |weights| weights[position]);
+    let mut displace = |position: usize, mean: f64, mass: f64| {
         let displacement = mean - f64::from(projections[position]);
         squares += mass * displacement * displacement;
-        let moved = (mass * displacement) as f32;
-        for (dim, along) in moves[position * dims..][..dims].iter_mut().enumerate() {
-            *along += moved * theta(dim);
-        }
+        (mass * displacement) as f32
     };
-    match weights {
-        None => law.for_each_cell(n, displace),
-        Some(weights) => law.for_each_weighted_cell(weights, order, displace),
+    match (weights, moves.as_chunks_mut::<2>()) {
+        // The common case by itself, without a loop over two dimensions.
+        (None, (moves, _)) if dims == 2 => {
+            let theta = [theta(0), theta(1)];
+            law.for_each_cell(n, |rank, mean| {
+                let position = order[rank] as usize;
+                let moved = displace(position, mean, 1.0);
+                let [across, along] = &mut moves[position];
+                *across += moved * theta[0];
+                *along += moved * theta[1];
+            });
+        }
+        _ => {
+            let displace = |rank: usize, mean: f64| {
+                let position = order[rank] as usize;
+                let moved = displace(position, mean, weights.map_or(1.0, |weights| weights[position]));
+                for (dim, along) in moves[position * dims..][..dims].iter_mut().enumerate() {
+                    *along += moved * theta(dim);
+                }
+            };
+            match weights {
+                None => law.for_each_cell(n, displace),
+                Some(weights) => law.for_each_weighted_cell(weights, order, displace),
+            }
+        }
     }
     squares
 }

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 
 use fsot::sampler::{DitherMask, Fast, ScramblingKeys, Stbn, stratified};
 use fsot::{Config, DimensionGroup, Extent, Form, Kernel, Objective, Optimizer, SampleTable};
-use fsot::{SpatialKernel, TemporalKernel, Until};
+use fsot::{SpatialKernel, TemporalKernel, Until, Work};
 
 use crate::{Failure, Scale, measure, scene};
 
@@ -116,12 +116,12 @@ impl Shelf {
                 table.cooling.sweeps = sweeps(if frames > 1 { 150 } else { 2000 });
                 table.table()?
             }
-            Maker::Ours => ours(Config { seed, ..Config::new(extent, dims) }, effort)?,
+            Maker::Ours => ours(Config { seed, ..Config::new(extent, dims) }, tile, effort)?,
             Maker::OursTaa => {
                 let groups = DimensionGroup::pairs_and_whole(dims);
                 let kernel = Kernel::product(SpatialKernel::Gaussian { sigma_px: 2.1 }, measure::taa());
                 let terms = Objective::blue_noise(&[kernel], Form::LevelSets, &groups, &extent);
-                ours(Config { seed, terms, ..Config::new(extent, dims) }, effort)?
+                ours(Config { seed, terms, ..Config::new(extent, dims) }, tile, effort)?
             }
         };
         self.tables.insert(recipe, table);
@@ -134,12 +134,16 @@ impl Shelf {
     }
 }
 
-/// Our tables, with the optimiser's defaults: about as much work for every shape.
-fn ours(config: Config, effort: f64) -> Result<SampleTable, Failure> {
-    let Extent { frames, spp, .. } = config.extent;
-    let slices = if frames > 1 { 1024.0 } else { 8192.0 } * effort / spp as f64;
+/// Our tables, with the optimiser's defaults: slices, then sweeps, and about as much of each for every shape. Slices take
+/// time in proportion to the samples of a pixel, sweeps to their square.
+fn ours(config: Config, tile: usize, effort: f64) -> Result<SampleTable, Failure> {
+    let Extent { frames, height, width, spp } = config.extent;
+    let room = (tile * tile) as f64 / (height * width) as f64;
+    let [slices, sweeps] = if frames > 1 { [300.0, 150.0] } else { [6000.0, 2000.0] };
+    let slices_per_class = (slices * effort * room / spp as f64).ceil() as u64;
+    let sweeps = (sweeps * effort * room / (spp * spp) as f64).ceil() as u64;
     let mut optimizer = Optimizer::new(config)?;
-    optimizer.run(Until::SlicesPerClass(slices.ceil() as u64), |_| ControlFlow::Continue(()))?;
+    optimizer.run(Until::Work(Work { slices_per_class, sweeps }), |_| ControlFlow::Continue(()))?;
     Ok(optimizer.into_table())
 }
 
