@@ -59,6 +59,8 @@ struct Scratch {
 #[derive(Default)]
 struct Chunk {
     samples: Vec<u32>,
+    /// First and last of them.
+    span: (u32, u32),
     moves: Vec<f32>,
     /// Masses of the samples of weighted terms.
     masses: Vec<f32>,
@@ -104,6 +106,8 @@ impl Engine {
             std::mem::swap(&mut chunk.samples, &mut large.subset);
         }
         draws.retain(|draw| !is_large(draw));
+        // Chunks of neighbours read and move the same part of the table.
+        draws.sort_unstable_by_key(|draw| (draw.term, draw.member, draw.name));
         // Fewer large subsets at a time, so that memory is bounded by samples and not by slices times samples.
         let sizes = objective
             .terms
@@ -164,6 +168,9 @@ impl WithSimd for Transport<'_> {
             }
             chunk.ends.push(chunk.samples.len());
         }
+        let samples = chunk.samples.iter();
+        chunk.span =
+            samples.fold((u32::MAX, 0), |(first, last), &sample| (first.min(sample), last.max(sample)));
     }
 }
 
@@ -314,8 +321,12 @@ fn add_up(objective: &Objective, chunks: &[Chunk], draws: &[Draw], per_chunk: us
     let per_part = samples.div_ceil(parts);
     let add = |(index, (sums, hits)): (usize, (&mut [f32], &mut [f32]))| {
         let mut part = Part { first: index * per_part, sums, hits };
+        let samples = part.first..part.first + per_part;
         for (chunk, draws) in chunks.iter().zip(draws.chunks(per_chunk)) {
-            chunk.add_to(objective, draws, &mut part);
+            let (first, last) = chunk.span;
+            if (first as usize) < samples.end && samples.start <= last as usize {
+                chunk.add_to(objective, draws, &mut part);
+            }
         }
     };
     if parts == 1 {

@@ -7,7 +7,7 @@ use crate::lanes::Gather;
 use crate::target::Pieces;
 
 /// Above this many samples a sort is worth sharing between threads.
-pub(crate) const SHARED: usize = 1 << 15;
+pub(crate) const SHARED: usize = 1 << 17;
 
 /// From this many samples on, a radix sort beats the comparisons of the standard library.
 const RADIX: usize = 256;
