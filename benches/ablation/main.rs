@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Choices that don't change the cost of a slice are compared at equal slices, the others at equal time: that of the
-//! defaults, timed right before each. Tables are measured as in the README; all figures are ratios to white noise of the
+//! defaults, as told by short runs of both right before each. Tables are measured as in the README; all figures are ratios to white noise of the
 //! same shape.
 //!
 //! With `--test`, or outside `cargo bench`, everything runs once on small tables and is checked.
@@ -70,9 +70,6 @@ struct Row {
     name: String,
     outcomes: Vec<Outcome>,
 }
-
-/// What runs at equal time get at least: small tables are done sooner than a clock can tell.
-const SHORTEST_SECONDS: f64 = 0.02;
 
 fn main() -> Result<(), Failure> {
     let arguments = Arguments::parse();
@@ -150,19 +147,29 @@ fn measure(case: &Case, variant: &Variant) -> Result<Outcome, Failure> {
         let default = Config { seed, ..Config::new(case.extent, 2) };
         let mut config = default.clone();
         (variant.change)(&mut config);
-        let slices = Until::SlicesPerClass(case.slices_per_class);
-        let until = match variant.effort {
-            Effort::Slices => slices,
-            // Timed again each time: other work on the machine comes and goes.
+        let slices_per_class = match variant.effort {
+            Effort::Slices => case.slices_per_class,
             Effort::Seconds => {
-                let (_, _, seconds) = make(default, Making::Last, slices)?;
-                Until::Seconds(seconds.max(SHORTEST_SECONDS))
+                let calibration = case.slices_per_class.div_ceil(8);
+                let share = quickest(&default, calibration)? / quickest(&config, calibration)?;
+                (case.slices_per_class as f64 * share).round().max(1.0) as u64
             }
         };
+        let until = Until::SlicesPerClass(slices_per_class);
         let (table, slices_per_class, seconds) = make(config, variant.making, until)?;
         Ok(Outcome { slices_per_class, seconds, quality: judge.judge(&table)? })
     });
     Ok(mean(&outcomes.collect::<Result<Vec<_>, _>>()?))
+}
+
+/// Seconds of the quickest of three interludes: other work on the machine comes and goes.
+fn quickest(config: &Config, slices_per_class: u64) -> Result<f64, Failure> {
+    let mut quickest = f64::INFINITY;
+    for _ in 0..3 {
+        let until = Until::SlicesPerClass(slices_per_class);
+        quickest = quickest.min(make(config.clone(), Making::Last, until)?.2);
+    }
+    Ok(quickest)
 }
 
 /// A table, its slices per class and its seconds.
