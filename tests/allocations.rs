@@ -7,7 +7,9 @@ use fsot::{Config, Extent, Optimizer};
 fn allocations(extent: Extent) -> u64 {
     let mut optimizer = Optimizer::new(Config::new(extent, 2)).unwrap();
     let mut work = || {
-        (0..64).for_each(|_| drop(optimizer.step(0.1, 1.0)));
+        (0..64).for_each(|_| {
+            let _ = optimizer.step(0.1, 1.0);
+        });
         (0..4).for_each(|_| drop(optimizer.sweep(0.1, 1.0).unwrap()));
     };
     // The counter is that of its thread: all work happens on this one.
