@@ -122,13 +122,6 @@ fn optimize(arguments: &Arguments) -> Result<(), Failure> {
     // An unwritable path is found out before the work, not after it.
     SampleTable::check_writable(&arguments.out)?;
 
-    // Enough slices for a standard error of about half a percent of the ratio.
-    const BOUND_SLICES: usize = 16_384;
-    let measure = |optimizer: &Optimizer| {
-        metrics::bound(optimizer.objective(), &optimizer.table(), optimizer.config().seed, BOUND_SLICES)
-    };
-    let before = if arguments.no_bound { None } else { Some(measure(&optimizer)?.total) };
-
     let interrupted = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&interrupted);
     ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))?;
@@ -146,10 +139,7 @@ fn optimize(arguments: &Arguments) -> Result<(), Failure> {
     })?;
     bar.finish_and_clear();
 
-    let bound = match before {
-        Some(before) => Some(BoundRecord { before, after: measure(&optimizer)?.total }),
-        None => None,
-    };
+    let bound = if arguments.no_bound { None } else { Some(bound(&optimizer)?) };
     let seconds = report.elapsed.as_secs_f64();
     let ended_early = report.ended != Ended::Finished;
     let configuration = serde_json::to_value(optimizer.config())?;
@@ -187,6 +177,16 @@ fn optimize(arguments: &Arguments) -> Result<(), Failure> {
     }
     writeln!(out, "{}, {}", arguments.out.display(), Metadata::path_beside(&arguments.out).display())?;
     Ok(())
+}
+
+/// The bound of the white noise that the run began with, and of what has become of it.
+fn bound(optimizer: &Optimizer) -> Result<BoundRecord, Failure> {
+    // Enough slices for a standard error of about half a percent of the ratio.
+    const SLICES: usize = 16_384;
+    let Config { extent, dims, seed, .. } = *optimizer.config();
+    let measure = |table| metrics::bound(optimizer.objective(), &table, seed, SLICES);
+    let before = measure(SampleTable::white_noise(extent, dims, seed)?)?.total;
+    Ok(BoundRecord { before, after: measure(optimizer.table())?.total })
 }
 
 fn until(arguments: &Arguments) -> Until {

@@ -1,11 +1,10 @@
 //! Descent: updates of a table in place. Owns its moments, knows nothing of transport.
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::domain::Domain;
 use crate::error::ConfigError;
-use crate::pull::Pull;
+use crate::part::Part;
 
 /// How a step moves the samples.
 ///
@@ -150,16 +149,12 @@ impl Default for Descent {
     }
 }
 
-/// Moves the points by `rate` times their mean pull and clears the pull.
-pub(crate) fn project(rate: f64, domains: &[Domain], points: &mut [f32], pull: &mut Pull) {
-    let task = TASK.next_multiple_of(domains.len());
-    let tasks =
-        points.par_chunks_mut(task).zip(pull.sums.par_chunks_mut(task)).zip(pull.hits.par_chunks_mut(task));
+/// Moves the samples of a part by `rate` times their mean pull and clears the pull. `domains` has one entry per
+/// dimension.
+pub(crate) fn project(rate: f64, domains: &[Domain], part: &mut Part) {
     let rate = rate as f32;
-    tasks.for_each(|((points, sums), hits)| {
-        let pulls = sums.iter_mut().zip(hits).map(|(sum, hits)| take_mean(sum, hits));
-        move_points(domains, points, pulls.map(|pull| rate * pull));
-    });
+    let pulls = part.sums.iter_mut().zip(&mut *part.hits).map(|(sum, hits)| take_mean(sum, hits));
+    move_points(domains, part.points, pulls.map(|pull| rate * pull));
 }
 
 /// A descent on its way: its moments and the number of steps that made them.
@@ -171,8 +166,13 @@ pub(crate) struct Walker {
     second: Vec<f32>,
 }
 
-/// Coordinates per task: a few pages, whatever the number of threads.
-const TASK: usize = 1 << 14;
+/// One step of a descent, for any part of a table.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Walk {
+    Barycentric { rate: f64 },
+    Sgd { rate: f32, momentum: f32 },
+    Adam { rate: f32, betas: [f32; 2], unbias: [f32; 2], epsilon: f32 },
+}
 
 impl Walker {
     pub(crate) fn new(descent: Descent, coordinates: usize) -> Self {
@@ -184,47 +184,52 @@ impl Walker {
         Self { descent, steps: 0, first: vec![0.0; first], second: vec![0.0; second] }
     }
 
-    /// Moves the points by what a step pulled, at step size `rate`, and clears the pull. `domains` has one entry per
-    /// dimension.
-    pub(crate) fn step(&mut self, rate: f64, domains: &[Domain], points: &mut [f32], pull: &mut Pull) {
+    /// Begins a step of size `rate`.
+    pub(crate) fn step(&mut self, rate: f64) -> Walk {
         self.steps = self.steps.saturating_add(1);
-        if let Descent::Barycentric { .. } = self.descent {
-            return project(rate, domains, points, pull);
-        }
-        let task = TASK.next_multiple_of(domains.len());
-        let tasks = points
-            .par_chunks_mut(task)
-            .zip(pull.sums.par_chunks_mut(task))
-            .zip(pull.hits.par_chunks_mut(task));
-        let rate = rate as f32;
         match self.descent {
-            Descent::Barycentric { .. } => {}
-            Descent::Sgd { momentum, .. } => {
-                let momentum = momentum as f32;
-                tasks.zip(self.first.par_chunks_mut(task)).for_each(|(((points, sums), hits), velocity)| {
-                    let pulls = sums.iter_mut().zip(hits).map(|(sum, hits)| take_mean(sum, hits));
-                    let motion = velocity.iter_mut().zip(pulls).map(|(velocity, pull)| {
-                        *velocity = momentum * *velocity + pull;
-                        rate * *velocity
-                    });
-                    move_points(domains, points, motion);
+            Descent::Barycentric { .. } => Walk::Barycentric { rate },
+            Descent::Sgd { momentum, .. } => Walk::Sgd { rate: rate as f32, momentum: momentum as f32 },
+            Descent::Adam { beta1, beta2, epsilon, .. } => Walk::Adam {
+                rate: rate as f32,
+                betas: [beta1, beta2].map(|beta| beta as f32),
+                unbias: [beta1, beta2].map(|beta| 1.0 / (1.0 - beta.powi(self.steps)) as f32),
+                epsilon: epsilon as f32,
+            },
+        }
+    }
+
+    /// First and second moments of all coordinates; empty where the descent has none.
+    pub(crate) fn moments(&mut self) -> [&mut [f32]; 2] {
+        [&mut self.first, &mut self.second]
+    }
+}
+
+impl Walk {
+    /// Moves the samples of a part by what pulls them and clears the pull. `domains` has one entry per dimension.
+    pub(crate) fn advance(self, domains: &[Domain], part: &mut Part) {
+        let pulls = |sums, hits| Iterator::zip(sums, hits).map(|(sum, hits)| take_mean(sum, hits));
+        match self {
+            Walk::Barycentric { rate } => project(rate, domains, part),
+            Walk::Sgd { rate, momentum } => {
+                let [velocities, _] = &mut part.moments;
+                let pulls = pulls(part.sums.iter_mut(), part.hits.iter_mut());
+                let motion = velocities.iter_mut().zip(pulls).map(|(velocity, pull)| {
+                    *velocity = momentum * *velocity + pull;
+                    rate * *velocity
                 });
+                move_points(domains, part.points, motion);
             }
-            Descent::Adam { beta1, beta2, epsilon, .. } => {
-                let [unbias1, unbias2] =
-                    [beta1, beta2].map(|beta| 1.0 / (1.0 - beta.powi(self.steps)) as f32);
-                let [beta1, beta2, epsilon] = [beta1, beta2, epsilon].map(|value| value as f32);
-                let moments = self.first.par_chunks_mut(task).zip(self.second.par_chunks_mut(task));
-                tasks.zip(moments).for_each(|(((points, sums), hits), (first, second))| {
-                    let pulls = sums.iter_mut().zip(hits).map(|(sum, hits)| take_mean(sum, hits));
-                    let moments = first.iter_mut().zip(second);
-                    let motion = moments.zip(pulls).map(|((first, second), pull)| {
-                        *first = beta1 * *first + (1.0 - beta1) * pull;
-                        *second = beta2 * *second + (1.0 - beta2) * pull * pull;
-                        rate * (unbias1 * *first) / ((unbias2 * *second).sqrt() + epsilon)
-                    });
-                    move_points(domains, points, motion);
+            Walk::Adam { rate, betas: [beta1, beta2], unbias: [unbias1, unbias2], epsilon } => {
+                let [first, second] = &mut part.moments;
+                let moments = first.iter_mut().zip(second.iter_mut());
+                let pulls = pulls(part.sums.iter_mut(), part.hits.iter_mut());
+                let motion = moments.zip(pulls).map(|((first, second), pull)| {
+                    *first = beta1 * *first + (1.0 - beta1) * pull;
+                    *second = beta2 * *second + (1.0 - beta2) * pull * pull;
+                    rate * (unbias1 * *first) / ((unbias2 * *second).sqrt() + epsilon)
                 });
+                move_points(domains, part.points, motion);
             }
         }
     }
@@ -257,6 +262,15 @@ fn move_points(domains: &[Domain], points: &mut [f32], motion: impl Iterator<Ite
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pull::Pull;
+
+    /// Moves the point by what pulls it.
+    fn step(walker: &mut Walker, rate: f64, point: &mut [f32; 1], pull: &mut Pull) {
+        let walk = walker.step(rate);
+        let (sums, hits) = (&mut pull.sums, &mut pull.hits);
+        let mut part = Part { first: 0, dims: 1, points: point, sums, hits, moments: walker.moments() };
+        walk.advance(&[Domain::Interval], &mut part);
+    }
 
     fn walk(descent: Descent, pulls: &[f32], rate: f64) -> Vec<f32> {
         let mut walker = Walker::new(descent, 1);
@@ -264,7 +278,7 @@ mod tests {
         let mut trace = Vec::new();
         for &sum in pulls {
             let mut pull = Pull { sums: vec![sum], hits: vec![2.0], ..Pull::default() };
-            walker.step(rate, &[Domain::Interval], &mut points, &mut pull);
+            step(&mut walker, rate, &mut points, &mut pull);
             assert_eq!((pull.sums[0], pull.hits[0]), (0.0, 0.0));
             trace.push(points[0]);
         }
@@ -287,7 +301,7 @@ mod tests {
         let mut walker = Walker::new(Descent::barycentric(), 1);
         let mut points = [0.3];
         let mut pull = Pull { sums: vec![0.0], hits: vec![0.0], ..Pull::default() };
-        walker.step(1.0, &[Domain::Interval], &mut points, &mut pull);
+        step(&mut walker, 1.0, &mut points, &mut pull);
         assert_eq!(points, [0.3]);
     }
 

@@ -5,11 +5,13 @@
 //! the position comes out of the sort for free. Plain arrays of [`LANES`] numbers: the compiler turns them into
 //! whatever vectors the processor has, without changing a bit of the result.
 
+use std::ops::Range;
+
 use pulp::Simd;
 
 use crate::law::{self, LaneLaw};
 use crate::network::Network;
-use crate::row::{LANES, Row};
+use crate::row::{self, LANES, Row};
 
 /// Largest subset that is sorted in lanes; above it the network's O(n log² n) loses to a general sort.
 pub(crate) const LONGEST: usize = 1024;
@@ -64,10 +66,26 @@ impl LaneBuffers {
     }
 }
 
+/// Numbers of the samples of a subset.
+#[derive(Clone)]
+pub(crate) enum Samples<'a> {
+    List(&'a [u32]),
+    Run(Range<u32>),
+}
+
+impl Samples<'_> {
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Samples::List(list) => list.len(),
+            Samples::Run(run) => run.len(),
+        }
+    }
+}
+
 /// Where the samples of a subset stand, seen from one dimension group.
 pub(crate) struct Gather<'a> {
     /// Numbers of the samples.
-    pub samples: &'a [u32],
+    pub samples: Samples<'a>,
     /// Values of the whole table.
     pub points: &'a [f32],
     /// Dimensions of the table.
@@ -79,22 +97,23 @@ pub(crate) struct Gather<'a> {
 }
 
 impl Gather<'_> {
-    /// Writes the coordinates of the subset, sample by sample, from the middle of the cube.
+    /// Writes the coordinates of a listed subset, sample by sample, from the middle of the cube. A run is none that the
+    /// lanes take.
     #[inline(always)]
     fn gather(&self, coordinates: &mut [f32]) {
-        let dims = self.dims.len();
+        let Samples::List(list) = self.samples else { return };
+        let values = list.iter().map(|&sample| self.sample(sample));
         if let ([x, y], [None, None]) = (self.dims, self.cut) {
             // The common case by itself, without a choice per coordinate.
             let (points, _) = coordinates.as_chunks_mut::<2>();
-            for (point, &sample) in points.iter_mut().zip(self.samples) {
-                let values = &self.points[sample as usize * self.stride..][..self.stride];
+            for (point, values) in points.iter_mut().zip(values) {
                 *point = [values[*x] - 0.5, values[*y] - 0.5];
             }
             return;
         }
-        for (j, point) in coordinates.chunks_exact_mut(dims).enumerate() {
+        for (point, values) in coordinates.chunks_exact_mut(self.dims.len()).zip(values) {
             for (dim, value) in point.iter_mut().enumerate() {
-                *value = self.coordinate(j, dim) - 0.5;
+                *value = self.coordinate(values, dim) - 0.5;
             }
         }
     }
@@ -102,12 +121,29 @@ impl Gather<'_> {
     /// Writes the projections of the samples from `first` on along a direction.
     #[inline(always)]
     pub(crate) fn project(&self, first: usize, theta: &impl Fn(usize) -> f32, projections: &mut [f32]) {
-        let samples = &self.samples[first..][..projections.len()];
+        match &self.samples {
+            Samples::List(list) => {
+                let values = list[first..].iter().map(|&sample| self.sample(sample));
+                self.project_each(values, theta, projections);
+            }
+            Samples::Run(run) => {
+                let points = &self.points[(run.start as usize + first) * self.stride..];
+                self.project_each(points.chunks_exact(self.stride), theta, projections);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn project_each<'a>(
+        &self,
+        samples: impl Iterator<Item = &'a [f32]> + Clone,
+        theta: &impl Fn(usize) -> f32,
+        projections: &mut [f32],
+    ) {
         if let (&[x, y], [None, None]) = (self.dims, self.cut) {
             // The common case by itself, without a choice per coordinate.
             let theta = [theta(0), theta(1)];
-            for (projection, &sample) in projections.iter_mut().zip(samples) {
-                let values = &self.points[sample as usize * self.stride..][..self.stride];
+            for (projection, values) in projections.iter_mut().zip(samples) {
                 *projection = values[x] * theta[0] + values[y] * theta[1];
             }
             return;
@@ -115,17 +151,22 @@ impl Gather<'_> {
         projections.fill(0.0);
         for dim in 0..self.dims.len() {
             let component = theta(dim);
-            for (j, projection) in projections.iter_mut().enumerate() {
-                *projection += self.coordinate(first + j, dim) * component;
+            for (projection, values) in projections.iter_mut().zip(samples.clone()) {
+                *projection += self.coordinate(values, dim) * component;
             }
         }
     }
 
-    /// Coordinate `dim` (of the group) of the subset's `j`th sample, shifted and wrapped where the dimension is
-    /// a torus.
+    /// Coordinates of a sample in the table.
     #[inline(always)]
-    pub(crate) fn coordinate(&self, j: usize, dim: usize) -> f32 {
-        let value = self.points[self.samples[j] as usize * self.stride + self.dims[dim]];
+    fn sample(&self, sample: u32) -> &[f32] {
+        &self.points[sample as usize * self.stride..][..self.stride]
+    }
+
+    /// Coordinate `dim` (of the group) of a sample, shifted and wrapped where the dimension is a torus.
+    #[inline(always)]
+    fn coordinate(&self, values: &[f32], dim: usize) -> f32 {
+        let value = values[self.dims[dim]];
         match self.cut[dim] {
             None => value,
             Some(cut) => {
@@ -180,7 +221,7 @@ pub(crate) fn transport<S: Simd>(
         // An unused lane may have targets, but moves nothing.
         *square = if extent > 0.0 { *square } else { 0.0 };
     }
-    sum(squares)
+    row::sum(squares)
 }
 
 #[inline(always)]
@@ -337,15 +378,4 @@ fn add_up(quarters: &[[f32; LANES / 4]], sums: &mut [f32]) {
     for ([a, b, c, d], sum) in quarters.iter().zip(sums) {
         *sum = (a + c) + (b + d);
     }
-}
-
-/// Sum over lanes in a fixed order, the same on every processor.
-#[inline(always)]
-fn sum(row: Row) -> f32 {
-    let mut eight = [0.0; 8];
-    for lane in 0..8 {
-        eight[lane] = row[lane] + row[lane + 8];
-    }
-    let four = [eight[0] + eight[4], eight[1] + eight[5], eight[2] + eight[6], eight[3] + eight[7]];
-    (four[0] + four[2]) + (four[1] + four[3])
 }

@@ -129,6 +129,7 @@ mod network;
 mod npy;
 mod objective;
 mod optimizer;
+mod part;
 mod plan;
 mod point_set;
 mod pull;

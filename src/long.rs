@@ -16,6 +16,9 @@ const LARGEST_RADIX: usize = 1 << (u32::BITS - DIGIT);
 /// Bits of a digit of the radix sort, which takes two.
 const DIGIT: u32 = 11;
 
+/// Cells whose means are computed together.
+const BLOCK: usize = 64;
+
 /// Buffers of one worker; they grow to the largest subset seen and stay.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LongBuffers {
@@ -60,21 +63,43 @@ pub(crate) enum LongShape<'a> {
 }
 
 impl LongShape<'_> {
+    /// Integrals of the quantile function from 0 to the upper ends of cells, from cell `begin` of `n` on.
+    #[inline(always)]
+    fn integrals(&self, begin: usize, n: usize, integrals: &mut [f64; BLOCK]) {
+        let end = |index: usize| ((begin + index + 1) as u32 as f64 / n as f64).min(0.5);
+        match *self {
+            LongShape::Trapezoid { longer, shorter } => {
+                for (index, integral) in integrals.iter_mut().enumerate() {
+                    *integral = trapezoid_integral(longer, shorter, end(index));
+                }
+            }
+            _ => {
+                for (index, integral) in integrals.iter_mut().enumerate().take(n / 2 - begin) {
+                    *integral = self.integral(end(index));
+                }
+            }
+        }
+    }
+
     /// Integral of the quantile function from 0 to `u`, at most 1/2.
     fn integral(&self, u: f64) -> f64 {
         match *self {
-            LongShape::Trapezoid { longer, shorter } => {
-                let edge = 0.5 * shorter / longer.max(f64::MIN_POSITIVE);
-                let rising = u.min(edge);
-                let beyond = u - rising;
-                (2.0 / 3.0) * (2.0 * longer * shorter * rising).sqrt() * rising
-                    + beyond * (longer * 0.5 * (u + rising) + 0.5 * shorter)
-            }
+            LongShape::Trapezoid { longer, shorter } => trapezoid_integral(longer, shorter, u),
             LongShape::Tabulated { block, lane } => block.integral_of_lane(&Boundary::new(u), lane),
             // Not symmetric: the callers ask it themselves.
             LongShape::Pieces(_) => 0.0,
         }
     }
+}
+
+/// Integral of a trapezoid's quantile function from 0 to `u`, at most 1/2.
+#[inline(always)]
+fn trapezoid_integral(longer: f64, shorter: f64, u: f64) -> f64 {
+    let edge = 0.5 * shorter / longer.max(f64::MIN_POSITIVE);
+    let rising = u.min(edge);
+    let beyond = u - rising;
+    (2.0 / 3.0) * (2.0 * longer * shorter * rising).sqrt() * rising
+        + beyond * (longer * 0.5 * (u + rising) + 0.5 * shorter)
 }
 
 impl LongLaw<'_> {
@@ -87,12 +112,16 @@ impl LongLaw<'_> {
         }
         let cells = n as f64;
         let mut below = 0.0;
-        for cell in 0..n / 2 {
-            let integral = shape.integral((cell + 1) as f64 / cells);
-            let above = (integral - below) * cells;
-            visit(cell, lowest + above);
-            visit(n - 1 - cell, lowest + (extent - above));
-            below = integral;
+        // Integrals come in blocks of their own, which are whole vectors of square roots.
+        for begin in (0..n / 2).step_by(BLOCK) {
+            let mut integrals = [0.0; BLOCK];
+            shape.integrals(begin, n, &mut integrals);
+            for (cell, integral) in (begin..n / 2).zip(integrals) {
+                let above = (integral - below) * cells;
+                visit(cell, lowest + above);
+                visit(n - 1 - cell, lowest + (extent - above));
+                below = integral;
+            }
         }
         if n % 2 == 1 {
             visit(n / 2, lowest + 0.5 * extent);
@@ -128,8 +157,8 @@ impl LongLaw<'_> {
     }
 }
 
-/// Transports a subset along one direction and adds, per sample and dimension of the group, `mass * displacement *
-/// theta` to `moves`. Masses are `weights`, or 1. Returns the sum of `mass * displacement²`.
+/// Transports a subset along one direction and puts `(position, mass * displacement)` for each of its samples. Masses are
+/// `weights`, or 1. Returns the sum of `mass * displacement²`.
 #[inline(always)]
 pub(crate) fn transport(
     subset: &Gather,
@@ -137,9 +166,9 @@ pub(crate) fn transport(
     law: &LongLaw,
     weights: Option<&[f64]>,
     buffers: &mut LongBuffers,
-    moves: &mut [f32],
+    mut put: impl FnMut(usize, f32),
 ) -> f64 {
-    let (n, dims) = (subset.samples.len(), subset.dims.len());
+    let n = subset.samples.len();
     let LongBuffers { projections, keys, entries, order, starts } = buffers;
     if (RADIX..=LARGEST_RADIX).contains(&n) {
         entries.resize(n.max(entries.len()), 0);
@@ -159,35 +188,17 @@ pub(crate) fn transport(
         _ => sort_shared(projections, keys, order),
     }
     let mut squares = 0.0;
-    let mut displace = |position: usize, mean: f64, mass: f64| {
+    let mut displace = |rank: usize, mean: f64, weights: Option<&[f64]>| {
+        let position = order[rank] as usize;
+        let mass = weights.map_or(1.0, |weights| weights[position]);
         let displacement = mean - f64::from(projections[position]);
         squares += mass * displacement * displacement;
-        (mass * displacement) as f32
+        put(position, (mass * displacement) as f32);
     };
-    match (weights, moves.as_chunks_mut::<2>()) {
-        // The common case by itself, without a loop over two dimensions.
-        (None, (moves, _)) if dims == 2 => {
-            let theta = [theta(0), theta(1)];
-            law.for_each_cell(n, |rank, mean| {
-                let position = order[rank] as usize;
-                let moved = displace(position, mean, 1.0);
-                let [across, along] = &mut moves[position];
-                *across += moved * theta[0];
-                *along += moved * theta[1];
-            });
-        }
-        _ => {
-            let displace = |rank: usize, mean: f64| {
-                let position = order[rank] as usize;
-                let moved = displace(position, mean, weights.map_or(1.0, |weights| weights[position]));
-                for (dim, along) in moves[position * dims..][..dims].iter_mut().enumerate() {
-                    *along += moved * theta(dim);
-                }
-            };
-            match weights {
-                None => law.for_each_cell(n, displace),
-                Some(weights) => law.for_each_weighted_cell(weights, order, displace),
-            }
+    match weights {
+        None => law.for_each_cell(n, |rank, mean| displace(rank, mean, None)),
+        Some(weights) => {
+            law.for_each_weighted_cell(weights, order, |rank, mean| displace(rank, mean, Some(weights)));
         }
     }
     squares

@@ -16,6 +16,7 @@ use crate::error::ConfigError;
 use crate::kernel::{Kernel, SpatialKernel, TemporalKernel};
 use crate::lattice::{Extent, MOST_DIMS};
 use crate::objective::Objective;
+use crate::part::Part;
 use crate::pull::Pull;
 use crate::run::{Ended, Plateau, RunReport, StepReport, Until, Work};
 use crate::table::SampleTable;
@@ -115,14 +116,13 @@ impl Optimizer {
         let mut points = crate::stream::uniforms(config.seed, config.extent.samples() * config.dims);
         objective.place(&mut points);
         let coordinates = points.len();
-        let pull = Pull { sums: vec![0.0; coordinates], hits: vec![0.0; coordinates], ..Pull::default() };
         Ok(Self {
             walker: Walker::new(config.descent, coordinates),
             engine: Engine::new(),
             steps: 0,
             sweeper: None,
             swept: 0,
-            pull,
+            pull: Pull::default(),
             points,
             objective,
             config,
@@ -172,24 +172,50 @@ impl Optimizer {
     /// Takes one step: descends with step size `rate`, then balances with `balance`. Returns the root mean square
     /// displacement before it along the descended slices, and the number of slices drawn.
     ///
+    /// All slices are drawn of the table as it is before the step, but for balanced subsets of 131,072 samples or more:
+    /// those see what the others have made of it.
+    ///
     /// For schedules of your own; [`Optimizer::run`] follows those of the configuration.
     pub fn step(&mut self, rate: f64, balance: f64) -> (f64, u64) {
         rayon::scope(|_| self.step_in_pool(rate, balance))
     }
 
     fn step_in_pool(&mut self, rate: f64, balance: f64) -> (f64, u64) {
-        let Self { engine, objective, config, steps, points, pull, walker, .. } = self;
-        let Config { domains, seed, .. } = config;
-        engine.pull(objective, (*seed, *steps, Pick::Batch(Role::Descend)), points, pull);
-        let displacement = (pull.squares / pull.mass.max(f64::MIN_POSITIVE)).sqrt();
-        let slices = pull.slices;
-        walker.step(rate, domains, points, pull);
-        engine.pull(objective, (*seed, *steps, Pick::Batch(Role::Balance)), points, pull);
-        if pull.slices > 0 {
-            descent::project(balance, domains, points, pull);
+        self.advance(self.steps, &[Pick::Batch(Role::Descend), Pick::Batch(Role::Balance)], rate, balance);
+        self.steps += 1;
+        let Pull { slices, squares, mass, .. } = self.pull;
+        ((squares / mass.max(f64::MIN_POSITIVE)).sqrt(), slices)
+    }
+
+    /// Moves the samples by the picked slices of a step: first those that descend with step size `rate`, then those
+    /// that balance, `share` of the way. All see the table as it is before, so that threads meet twice only; but the
+    /// largest of those that balance see it after the others.
+    fn advance(&mut self, step: u64, picks: &[Pick], rate: f64, share: f64) {
+        let Self { engine, objective, config, points, pull, walker, .. } = self;
+        let Config { domains, seed, dims, .. } = config;
+        let (dims, samples) = (*dims, points.len() / *dims);
+        pull.grow(points.len());
+        engine.transport(objective, (*seed, step, picks), points, pull);
+        let walk = picks.iter().any(|pick| pick.role() == Role::Descend).then(|| walker.step(rate));
+        let Pull { sums, hits, .. } = &mut *pull;
+        let moments = walker.moments();
+        let table = Part { first: 0, dims, points, sums, hits, moments };
+        table.for_each(engine.samples_per_part(samples), &|mut part| {
+            if let Some(walk) = walk {
+                engine.add_up(objective, Role::Descend, &mut part);
+                walk.advance(domains, &mut part);
+            }
+            if engine.waits(Role::Balance) {
+                engine.add_up(objective, Role::Balance, &mut part);
+                descent::project(share, domains, &mut part);
+            }
+        });
+        if engine.pull_of_large(objective, (*seed, step, Role::Balance), points, pull) {
+            let table = Part { points, ..pull.part(dims) };
+            table.for_each(engine.samples_per_part(samples), &|mut part| {
+                descent::project(share, domains, &mut part);
+            });
         }
-        *steps += 1;
-        (displacement, slices + pull.slices)
     }
 
     /// Sweeps once over all samples: each moves `rate` times along the gradient of the objective over all slices at once
@@ -228,8 +254,9 @@ impl Optimizer {
             // What has moved the table since: a balance, slices, a caller.
             sweeper.load(points);
         }
-        let pulls = sweeper.step(step, rate, domains, points);
+        let pulls = sweeper.step(step, rate, domains);
         if (step + 1).is_multiple_of(cramer::STEPS / BALANCES) {
+            sweeper.store(points);
             let turn = *swept * BALANCES as u64 + (step / (cramer::STEPS / BALANCES)) as u64;
             self.balance(turn, balance);
         }
@@ -238,11 +265,7 @@ impl Optimizer {
 
     /// Moves the samples `share` of the way along one slice of every class in the role of [`Role::Balance`].
     fn balance(&mut self, turn: u64, share: f64) {
-        let Self { engine, objective, config, points, pull, .. } = self;
-        engine.pull(objective, (config.seed, turn, Pick::Each(Role::Balance)), points, pull);
-        if pull.slices > 0 {
-            descent::project(share, &config.domains, points, pull);
-        }
+        self.advance(turn, &[Pick::Each(Role::Balance)], 0.0, share);
     }
 
     /// Brings the balances within each other, of frames and of the whole table, to an agreement after the last sweep.
@@ -293,6 +316,10 @@ impl Optimizer {
                 report.slices += slices;
                 (displacement, rate)
             } else {
+                if step == batches {
+                    // Sweeps need the room that batches have taken for themselves.
+                    self.engine = Engine::new();
+                }
                 let progress = (step - batches) as f64 / (steps - batches) as f64;
                 let rate = self.config.sweeps.of_a_run(work).at(progress);
                 let part = (step - batches) as usize % cramer::STEPS;
@@ -316,9 +343,14 @@ impl Optimizer {
         if work.sweeps > 0 && report.ended == Ended::Finished {
             self.settle(work.sweeps, self.config.balance.at(1.0));
         }
+        if let Some(sweeper) = &mut self.sweeper {
+            // A run may be broken off between two balances.
+            sweeper.store(&mut self.points);
+        }
         report.elapsed = begin.elapsed();
         // Buffers are as large as the largest subset, and copies of the table; nobody needs them until the next run.
         self.engine = Engine::new();
+        self.pull = Pull::default();
         self.sweeper = None;
         Ok(report)
     }

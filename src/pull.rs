@@ -1,5 +1,7 @@
 //! What the slices of a step want of the samples: the one thing that transport hands to descent.
 
+use crate::part::Part;
+
 /// Sum of displacements along the directions of the slices, and how many slices there were, per coordinate.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pull {
@@ -14,4 +16,18 @@ pub(crate) struct Pull {
     pub squares: f64,
     /// See `squares`.
     pub mass: f64,
+}
+
+impl Pull {
+    /// Makes room for this many coordinates, with no pull on any that are new.
+    pub(crate) fn grow(&mut self, coordinates: usize) {
+        self.sums.resize(coordinates, 0.0);
+        self.hits.resize(coordinates, 0.0);
+    }
+
+    /// All samples, without points and moments.
+    pub(crate) fn part(&mut self, dims: usize) -> Part<'_> {
+        let (sums, hits) = (&mut self.sums, &mut self.hits);
+        Part { first: 0, dims, points: &mut [], sums, hits, moments: [&mut [], &mut []] }
+    }
 }

@@ -1,20 +1,20 @@
-//! Steps work in buffers that the first ones have made.
+//! Steps work in buffers that the first ones have made, and those are few.
+
+use std::ops::ControlFlow;
 
 use allocation_counter::measure;
-use fsot::{Config, Extent, Optimizer};
+use fsot::{Config, Extent, Optimizer, Until, Work};
 
 /// Allocations of 64 steps and 4 sweeps, after 64 times as many have grown the buffers to the largest subsets.
 fn allocations(extent: Extent) -> u64 {
     let mut optimizer = Optimizer::new(Config::new(extent, 2)).unwrap();
     let mut work = || {
         (0..64).for_each(|_| {
-            let _ = optimizer.step(0.1, 1.0);
+            _ = optimizer.step(0.1, 1.0);
         });
-        (0..4).for_each(|_| drop(optimizer.sweep(0.1, 1.0).unwrap()));
+        (0..4).for_each(|_| _ = optimizer.sweep(0.1, 1.0).unwrap());
     };
-    // The counter is that of its thread: all work happens on this one.
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    pool.install(|| {
+    one_thread().install(|| {
         (0..64).for_each(|_| work());
         measure(work).count_total
     })
@@ -28,5 +28,30 @@ fn nothing_is_allocated() {
         Extent { frames: 6, height: 16, width: 16, spp: 1 },
     ] {
         assert_eq!(allocations(extent), 0, "{extent:?}");
+    }
+}
+
+/// The counter is that of its thread: all work happens on this one.
+fn one_thread() -> rayon::ThreadPool {
+    rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap()
+}
+
+#[test]
+fn the_peak_of_a_run_is_a_small_multiple_of_the_table() {
+    let extent = Extent { frames: 64, height: 64, width: 64, spp: 1 };
+    let table = (extent.samples() * 2 * size_of::<f32>()) as f64;
+    for (slices_per_class, sweeps, most) in [(2, 0, 9.5), (0, 1, 7.5), (2, 1, 9.5)] {
+        let peak = one_thread().install(|| {
+            measure(|| {
+                let mut optimizer = Optimizer::new(Config::new(extent, 2)).unwrap();
+                let work = Until::Work(Work { slices_per_class, sweeps });
+                optimizer.run(work, |_| ControlFlow::Continue(())).unwrap();
+            })
+            .bytes_max
+        });
+        // The table, its pulls (2), the buffers of the whole-table slice (2), and either the sweep's copy (1.2) or the order
+        // of visits (0.5), the draws of a step and what is in flight (2, less of a larger table).
+        let multiple = peak as f64 / table;
+        assert!(multiple < most, "{slices_per_class} slices, {sweeps} sweeps: {multiple:.2} times the table");
     }
 }

@@ -1,5 +1,6 @@
 //! A family planned for one extent: everything about its filters that does not depend on the samples.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::listed::Listed;
@@ -278,6 +279,18 @@ impl Family {
         // Where it goes below zero it becomes a large number, so that the lesser one is inside.
         let wrap = |at: u32, len: u32| at.min(at.wrapping_sub(len));
         offsets.iter().map(move |&[dt, dy, dx]| wrap(t + dt, all) + wrap(y + dy, frame) + wrap(x + dx, row))
+    }
+
+    /// The samples of class `member` at any level, where they are consecutive and all demanded by construction.
+    pub(crate) fn run(&self, member: usize) -> Option<Range<u32>> {
+        match &self.shape {
+            Shape::Blocks { sites, wanted: Wanted::All } => {
+                let samples = (sites * self.extent.spp) as u32;
+                Some(member as u32 * samples..(member as u32 + 1) * samples)
+            }
+            Shape::Prefixes { prefixes, wanted: Wanted::All } => Some(prefixes.run(member)),
+            _ => None,
+        }
     }
 
     /// Writes the numbers of the demanded samples of class `member` whose weight exceeds `level` (in `[0, 1)`, relative

@@ -1,8 +1,13 @@
 //! A table as the pair loop reads it: one plane per dimension and sample of a pixel, rows padded with their wrapped ends.
 
+use std::ops::Range;
+
+use rayon::prelude::*;
+
 use crate::class::Wanted;
+use crate::domain::Domain;
 use crate::lattice::Extent;
-use crate::row::LANES;
+use crate::row::{LANES, Row};
 
 /// Copy of a table in which the neighbours of [`LANES`] consecutive pixels are [`LANES`] consecutive numbers, also
 /// across the edge of the tile.
@@ -93,16 +98,39 @@ impl Planes {
 
     /// Copies a table in.
     pub(super) fn load(&mut self, points: &[f32]) {
-        for index in 0..self.runs() {
-            let run = self.run(index);
-            for lane in 0..self.len(run) {
-                let first = self.first(run, lane);
-                self.set(run, lane, &points[first..first + self.dims]);
-            }
-        }
+        let Self { extent, dims, margin, stride, .. } = *self;
+        let Extent { frames, height, width, spp } = extent;
+        let (lines, rows) = (frames * height, dims * spp * frames * height);
+        let rows =
+            self.values.par_chunks_exact_mut(stride).take(rows).enumerate().with_min_len(ROWS_PER_TASK);
+        rows.for_each(|(index, row)| {
+            let (plane, line) = (index / lines, index % lines);
+            let first = line * width * spp * dims + plane % spp * dims + plane / spp;
+            let values = points[first..].iter().step_by(spp * dims);
+            row[margin..margin + width].iter_mut().zip(values).for_each(|(to, from)| *to = *from);
+            repeat(row, margin, width, 0..width);
+        });
+    }
+
+    /// Copies the table out.
+    pub(super) fn store(&self, points: &mut [f32]) {
+        let Self { extent, dims, margin, stride, .. } = *self;
+        let Extent { frames, height, width, spp } = extent;
+        let per_row = width * spp * dims;
+        points.par_chunks_exact_mut(per_row).enumerate().with_min_len(ROWS_PER_TASK).for_each(
+            |(line, points)| {
+                for (sample, dim) in (0..spp).flat_map(|sample| (0..dims).map(move |dim| (sample, dim))) {
+                    let begin = ((dim * spp + sample) * frames * height + line) * stride + margin;
+                    let values = &self.values[begin..begin + width];
+                    let to = points[sample * dims + dim..].iter_mut().step_by(spp * dims);
+                    to.zip(values).for_each(|(to, from)| *to = *from);
+                }
+            },
+        );
     }
 
     /// Place of a sample's first coordinate in a table.
+    #[cfg(test)]
     pub(super) fn first(&self, run: Run, lane: usize) -> usize {
         (self.site(run, lane) * self.extent.spp + run.sample) * self.dims
     }
@@ -111,26 +139,50 @@ impl Planes {
         (run.frame * self.extent.height + run.y) * self.extent.width + run.x + lane
     }
 
-    /// Moves a sample, and its images in the margins.
+    /// Moves coordinate `dim` of the demanded samples of a run by `motion`, and their images in the margins.
     #[inline(always)]
-    pub(super) fn set(&mut self, run: Run, lane: usize, point: &[f32]) {
-        for (dim, &value) in point.iter().enumerate() {
-            self.put(dim, run, lane, value);
+    pub(super) fn shift(&mut self, dim: usize, run: Run, motion: &Row, domain: Domain) {
+        let (len, home) = (self.len(run), run.x + self.margin);
+        let begin = self.begin(dim, run.sample, run.frame, run.y);
+        if self.partial {
+            let flags = self.begin(self.dims, run.sample, run.frame, run.y);
+            for (lane, motion) in motion.iter().enumerate().take(len) {
+                if self.values[flags + home + lane] > 0.0 {
+                    let value = &mut self.values[begin + home + lane];
+                    *value = domain.admit(*value + motion);
+                }
+            }
+        } else {
+            let values = &mut self.values[begin + home..][..len];
+            values.iter_mut().zip(motion).for_each(|(value, motion)| *value = domain.admit(*value + motion));
         }
+        let row = &mut self.values[begin..begin + self.stride];
+        repeat(row, self.margin, self.extent.width, run.x..run.x + len);
     }
 
     #[inline(always)]
     fn put(&mut self, plane: usize, run: Run, lane: usize, value: f32) {
-        let (width, home) = (self.extent.width, run.x + lane + self.margin);
+        let x = run.x + lane;
         let begin = self.begin(plane, run.sample, run.frame, run.y);
         let row = &mut self.values[begin..begin + self.stride];
-        row[home] = value;
-        // The margin is at most as wide as the tile, so that there is one image on either side.
-        if home >= width {
-            row[home - width] = value;
-        }
-        if let Some(image) = row.get_mut(home + width) {
-            *image = value;
-        }
+        row[self.margin + x] = value;
+        repeat(row, self.margin, self.extent.width, x..x + 1);
+    }
+}
+
+/// Rows that are worth handing to a thread.
+const ROWS_PER_TASK: usize = 64;
+
+/// Copies pixels of a row to their images in its margins, and behind its end where that is filled up to whole runs.
+#[inline(always)]
+fn repeat(row: &mut [f32], margin: usize, width: usize, pixels: Range<usize>) {
+    // A margin is at most as wide as the tile, so that there is one image on either side.
+    let first = pixels.start.max(width - margin);
+    if first < pixels.end {
+        row.copy_within(margin + first..margin + pixels.end, margin + first - width);
+    }
+    let last = pixels.end.min(row.len() - margin - width);
+    if pixels.start < last {
+        row.copy_within(margin + pixels.start..margin + last, margin + pixels.start + width);
     }
 }

@@ -13,7 +13,7 @@ use crate::descent::Schedule;
 use crate::domain::Domain;
 use crate::error::ConfigError;
 use crate::objective::Objective;
-use crate::row::{LANES, Row};
+use crate::row::{self, LANES, Row};
 use crate::run::Work;
 use crate::stream::{self, Purpose};
 use crate::term::Role;
@@ -84,6 +84,8 @@ pub(crate) struct Sweeper {
     /// Runs that hold a demanded sample, in the order of this sweep.
     order: Vec<u32>,
     pulls: Vec<Row>,
+    /// Whether samples have moved since the table was read.
+    ahead: bool,
 }
 
 impl Sweeper {
@@ -113,12 +115,30 @@ impl Sweeper {
             (0..planes.len(run)).any(|lane| planes.wants(run, lane))
         };
         let order = (0..planes.runs() as u32).filter(wanted).collect();
-        Ok(Self { arch: Arch::new(), terms, factors, margin, planes, dims, order, pulls: Vec::new() })
+        Ok(Self {
+            arch: Arch::new(),
+            terms,
+            factors,
+            margin,
+            planes,
+            dims,
+            order,
+            pulls: Vec::new(),
+            ahead: false,
+        })
     }
 
     /// Reads the table anew.
     pub(crate) fn load(&mut self, points: &[f32]) {
         self.planes.load(points);
+        self.ahead = false;
+    }
+
+    /// Writes the table back, if samples have moved.
+    pub(crate) fn store(&mut self, points: &mut [f32]) {
+        if std::mem::take(&mut self.ahead) {
+            self.planes.store(points);
+        }
     }
 
     /// Begins a sweep, in an order named by seed and sweep.
@@ -132,15 +152,10 @@ impl Sweeper {
         }
     }
 
-    /// Moves the samples of one step of the sweep by `rate` times their pull. Returns the pulls' mean square.
-    pub(crate) fn step(
-        &mut self,
-        step: usize,
-        rate: f64,
-        domains: &[Domain],
-        points: &mut [f32],
-    ) -> MeanSquare {
-        let Self { arch, terms, factors, margin, planes, dims, order, pulls } = self;
+    /// Moves the samples of one step of the sweep by `rate` times their pull. Returns the pulls' mean square. What moves is
+    /// the copy, until it is stored.
+    pub(crate) fn step(&mut self, step: usize, rate: f64, domains: &[Domain]) -> MeanSquare {
+        let Self { arch, terms, factors, margin, planes, dims, order, pulls, ahead } = self;
         let (dims, margin) = (*dims, *margin);
         let runs = &order[part(order.len(), step)];
         pulls.resize(runs.len() * dims, [0.0; LANES]);
@@ -152,20 +167,12 @@ impl Sweeper {
         let mut all = MeanSquare::default();
         for (pulls, &run) in pulls.chunks_exact(dims).zip(runs) {
             let run = planes.run(run as usize);
-            for lane in 0..planes.len(run) {
-                if !planes.wants(run, lane) {
-                    continue;
-                }
-                let first = planes.first(run, lane);
-                let point = &mut points[first..first + dims];
-                for ((value, pull), domain) in point.iter_mut().zip(pulls).zip(domains) {
-                    all.sum += f64::from(pull[lane] * pull[lane]);
-                    *value = domain.admit(*value + rate as f32 * pull[lane]);
-                }
-                all.count += dims;
-                planes.set(run, lane, point);
+            for (dim, (pull, &domain)) in pulls.iter().zip(domains).enumerate() {
+                all.add(pull, |lane| lane < planes.len(run) && planes.wants(run, lane));
+                planes.shift(dim, run, &pull.map(|pull| rate as f32 * pull), domain);
             }
         }
+        *ahead = true;
         all
     }
 
@@ -209,6 +216,16 @@ impl AddAssign for MeanSquare {
 }
 
 impl MeanSquare {
+    #[inline(always)]
+    fn add(&mut self, pulls: &Row, is_one: impl Fn(usize) -> bool) {
+        let mut squares = [0.0; LANES];
+        for lane in (0..LANES).filter(|&lane| is_one(lane)) {
+            squares[lane] = pulls[lane] * pulls[lane];
+            self.count += 1;
+        }
+        self.sum += f64::from(row::sum(squares));
+    }
+
     pub(crate) fn root(self) -> f64 {
         (self.sum / self.count.max(1) as f64).sqrt()
     }

@@ -103,14 +103,14 @@ fn the_gradient_is_the_slope_of_the_value() {
 }
 
 /// The pulls of a whole sweep without motion.
-fn pulls(objective: &Objective, points: &mut [f32]) -> Vec<f32> {
+fn pulls(objective: &Objective, points: &[f32]) -> Vec<f32> {
     let sweeps = Sweeps { truncation: 0.0, ..Sweeps::default() };
     let mut sweeper = Sweeper::new(objective, &sweeps).unwrap();
     let mut all = vec![0.0; points.len()];
     sweeper.load(points);
     sweeper.shuffle(1, 0);
     for step in 0..STEPS {
-        sweeper.step(step, 0.0, &objective.domains, points);
+        sweeper.step(step, 0.0, &objective.domains);
         sweeper.each_pull(step, |coordinate, pull| all[coordinate] = pull);
     }
     all
@@ -119,9 +119,9 @@ fn pulls(objective: &Objective, points: &mut [f32]) -> Vec<f32> {
 /// One term alone: the pull is minus the gradient, times what `Sweeps` calls natural, over the share of one sample.
 fn assert_pull_is_gradient(objective: &Objective, natural: f64) {
     let (extent, dims) = (objective.extent(), objective.dims());
-    let mut points = stream::uniforms(5, extent.samples() * dims);
+    let points = stream::uniforms(5, extent.samples() * dims);
     let (_, gradient) = objective.cramer(&widened(&points)).unwrap();
-    let found = pulls(objective, &mut points);
+    let found = pulls(objective, &points);
     // gradient = c_d T (∇φ − …) / (P W²), with T = W W_1 and W = spp W_1; pull = −natural (∇φ − …).
     let scale = -natural * extent.samples() as f64 / mean_projection(dims);
     let largest = gradient.iter().map(|slope| (scale * slope).abs()).fold(0.0, f64::max);
@@ -175,8 +175,7 @@ fn terms_share_a_coordinate_by_weight() {
     let whole = objective(3, &[&[0, 1], &[0, 1, 2]]);
     let [pair, three] = [objective(3, &[&[0, 1]]), objective(3, &[&[0, 1, 2]])];
     let points = points(3);
-    let [both, of_pair, of_three] =
-        [&whole, &pair, &three].map(|objective| pulls(objective, &mut points.clone()));
+    let [both, of_pair, of_three] = [&whole, &pair, &three].map(|objective| pulls(objective, &points));
     for coordinate in 0..points.len() {
         // Both terms move by their own natural steps.
         let expected = match coordinate % 3 {
@@ -198,7 +197,7 @@ fn a_demand_leaves_out_samples() {
     let start = points(2);
     let mut moved = start.clone();
     let (_, gradient) = objective.cramer(&widened(&start)).unwrap();
-    let found = pulls(&objective, &mut moved);
+    let found = pulls(&objective, &moved);
     for (coordinate, (&slope, &pull)) in gradient.iter().zip(&found).enumerate() {
         let wanted = pixels[coordinate / 4];
         assert_eq!((slope != 0.0, pull != 0.0), (wanted, wanted), "{coordinate}");
@@ -208,8 +207,9 @@ fn a_demand_leaves_out_samples() {
     sweeper.load(&moved);
     sweeper.shuffle(1, 0);
     for step in 0..STEPS {
-        sweeper.step(step, 1.0, &domains, &mut moved);
+        sweeper.step(step, 1.0, &domains);
     }
+    sweeper.store(&mut moved);
     for (coordinate, (before, after)) in start.iter().zip(&moved).enumerate() {
         assert_eq!(before != after, pixels[coordinate / 4], "{coordinate}");
     }

@@ -1,5 +1,7 @@
 //! Every instruction set gives the same bits.
 
+use pulp::Simd;
+
 use super::*;
 use crate::domain::Domain;
 use crate::lattice::Extent;
@@ -17,8 +19,15 @@ fn transported<S: Simd>(
     let (mut orders, mut draws) = (Vec::new(), Vec::new());
     let (mut chunk, mut scratch) = (Chunk::default(), Scratch::default());
     objective.draw_subsets(1, 2, pick, &mut orders, &mut draws);
-    let (draws, chunk_of, scratch) = (&draws, &mut chunk, &mut scratch);
-    simd.vectorize(Transport { objective, seed: 1, step: 2, points, draws, chunk: chunk_of, scratch });
+    simd.vectorize(Transport {
+        objective,
+        seed: 1,
+        step: 2,
+        points,
+        draws: draws.iter(),
+        chunk: &mut chunk,
+        scratch: &mut scratch,
+    });
     let moves = chunk.moves.iter().map(|moved| moved.to_bits()).collect();
     (chunk.samples, moves, chunk.squares.to_bits())
 }

@@ -149,8 +149,10 @@ struct Compared {
 }
 
 fn compare(objective: &Objective, seed: u64, step: u64, points: &[f32], slices: &[Slice]) -> Compared {
-    let mut pull = Pull { sums: vec![0.0; points.len()], hits: vec![0.0; points.len()], ..Pull::default() };
-    Engine::new().pull(objective, (seed, step, crate::draw::Pick::Batch(Role::Descend)), points, &mut pull);
+    let (mut engine, mut pull) = (Engine::new(), Pull::default());
+    pull.grow(points.len());
+    engine.transport(objective, (seed, step, &[Pick::Batch(Role::Descend)]), points, &mut pull);
+    engine.add_up(objective, Role::Descend, &mut pull.part(objective.dims));
     assert_eq!(pull.slices, slices.len() as u64);
 
     let wide: Vec<f64> = points.iter().map(|&point| point.into()).collect();

@@ -77,7 +77,8 @@ impl Case {
 
     /// Compares one step, the first of an optimiser that starts from this table.
     fn check_step(&self, config: &Config, before: &SampleTable) -> Vec<usize> {
-        // Only descended, then descended and balanced: the second role is compared from where the first ended.
+        // Only descended, then descended and balanced: the second role sees the table as it was before, and moves on from
+        // where the first ended.
         let step = |balance: f64| {
             let mut optimizer = Optimizer::from_table(config.clone(), before.clone()).unwrap();
             let (displacement, slices) = optimizer.step(0.8, balance);
@@ -95,7 +96,7 @@ impl Case {
             ("descend", &descend, before, &descended, 0.8),
             ("balance", &balance, &descended, &balanced, 0.7),
         ] {
-            let pull = textbook::pull(config, slices, from.values(), self.tie());
+            let pull = textbook::pull(config, slices, before.values(), self.tie());
             if role == "descend" {
                 let expected = (pull.squares / pull.mass).sqrt();
                 // Ties and the rounding of sums over lanes.
