@@ -41,7 +41,7 @@ pub struct Sweeps {
 impl Default for Sweeps {
     fn default() -> Self {
         let [rate, polish] = [2.2, 1.3].map(|first| Schedule::geometric(first, 0.12));
-        Self { rate, polish, truncation: 0.02 }
+        Self { rate, polish, truncation: 0.007 }
     }
 }
 
