@@ -12,7 +12,6 @@ use fsot::{
 /// Windows of 128 points, half overlapping; the sequence wraps.
 #[derive(Debug)]
 struct Windows;
-
 impl ClassFamily for Windows {
     fn name(&self) -> &str {
         "windows"
@@ -29,7 +28,6 @@ impl ClassFamily for Windows {
 /// The disc inside the unit square: along any direction its density is a half circle.
 #[derive(Debug)]
 struct Disc;
-
 impl Measure for Disc {
     fn name(&self) -> &str {
         "disc"
@@ -52,9 +50,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut optimizer = Optimizer::new(Config::point_set(1024, 2, vec![windows, whole]))?;
     optimizer.run(Until::SlicesPerClass(2000), |_| std::ops::ControlFlow::Continue(()))?;
     let (table, mut page) = (optimizer.into_table(), page::Page::new(1280, 440));
-    for (panel, (first, count)) in [(0, 128), (320, 128), (0, 1024)].into_iter().enumerate() {
+    for (left, first, count) in [(20, 0, 128), (440, 320, 128), (860, 0, 1024)] {
         let dots = table.values().chunks_exact(2).skip(first).take(count);
-        page.scatter([20 + 420 * panel, 20], [400, 400], 3.0, dots.map(|dot| (dot, [20; 3])));
+        page.scatter([left, 20], [400, 400], 3.0, dots.map(|dot| (dot, [20; 3])));
     }
     Ok(page.image.save(std::env::args().nth(1).unwrap_or("custom_class.png".into()))?)
 }

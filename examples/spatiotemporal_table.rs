@@ -37,7 +37,7 @@ struct Arguments {
     /// Samples per pixel.
     #[arg(long, default_value_t = 1)]
     spp: usize,
-    /// Dimensions per sample, at most 1024.
+    /// Dimensions per sample, at most 64.
     #[arg(long, default_value_t = 2)]
     dims: usize,
     /// Width of the spatial Gaussian exp(-r²/sigma²), in pixels.

@@ -1,8 +1,8 @@
 //! One step's slices, in parallel, summed in a fixed order.
 //!
-//! The subsets of a step are cut into chunks of fixed size; workers transport them into buffers of their own. Then each
-//! worker adds up the displacements of its part of the table, chunk after chunk in the order of the draws, so that no
-//! result depends on how many threads there are. Buffers are reused from step to step.
+//! The subsets of a step are cut into chunks, in the order of their classes; workers transport them into buffers of their
+//! own. Then each worker adds up the displacements of its part of the table, chunk after chunk, so that no result depends
+//! on how many threads there are. Buffers are reused from step to step.
 
 mod chunk;
 
@@ -16,6 +16,7 @@ use crate::draw::{Draw, Order, Pick};
 use crate::long;
 use crate::objective::Objective;
 use crate::part::Part;
+use crate::plan::PlannedTerm;
 use crate::pull::Pull;
 use crate::term::Role;
 
@@ -29,6 +30,8 @@ const CHUNK_TOUCHES: usize = 1 << 13;
 const IN_FLIGHT: usize = 512;
 /// See [`IN_FLIGHT`].
 const TOUCHES_IN_FLIGHT: usize = 1 << 17;
+/// The same of balanced subsets that wait until the others have moved the table. They hold one number per sample.
+const TOUCHES_WAITING: usize = 1 << 20;
 
 /// Buffers, and the order of visits.
 pub(crate) struct Engine {
@@ -36,8 +39,9 @@ pub(crate) struct Engine {
     orders: Vec<Order>,
     descended: Batch,
     balanced: Batch,
-    /// What each worker needs while it transports: its own, which its caches hold.
-    scratch: Vec<Mutex<Scratch>>,
+    /// What each worker needs while it transports: its own, which its caches hold. It is taken out meanwhile, so that a worker
+    /// that is lent to another chunk in the middle of one makes do with a new one.
+    scratch: Vec<Mutex<Option<Scratch>>>,
     /// The same for the largest subsets, which come one after the other and share their sorts between threads: a few
     /// times the table, but once.
     large: Scratch,
@@ -56,6 +60,8 @@ struct Batch {
     chunks: Vec<Chunk>,
     /// How many of the chunks hold moves that are still to be added.
     waiting: usize,
+    /// How many of the draws have been shared among chunks.
+    shared: usize,
 }
 
 impl Batch {
@@ -63,14 +69,13 @@ impl Batch {
         self.draws.clear();
         self.order.clear();
         self.large.clear();
-        self.waiting = 0;
+        (self.waiting, self.shared) = (0, 0);
     }
 
     /// Draws the subsets of a step.
     fn draw(&mut self, objective: &Objective, seed: u64, step: u64, pick: Pick, orders: &mut Vec<Order>) {
         objective.draw_subsets(seed, step, pick, orders, &mut self.draws);
-        let is_large =
-            |draw: &Draw| objective.terms[draw.term as usize].family.mean_size() >= long::SHARED as f64;
+        let is_large = |draw: &Draw| is_large(&objective.terms[draw.term as usize]);
         self.large.extend(self.draws.iter().filter(|draw| is_large(draw)));
         self.draws.retain(|draw| !is_large(draw));
         // Chunks of neighbours read and move the same part of the table. Terms come one after the other as it is.
@@ -84,16 +89,17 @@ impl Batch {
 
     /// Subsets per chunk and chunks in flight: fewer large subsets at a time, so that memory is bounded by samples and not
     /// by slices times samples.
-    fn cut(&self, objective: &Objective, role: Role) -> (usize, usize) {
-        let terms = objective.terms.iter().filter(|term| term.spec.role == role);
+    fn sizes(&self, objective: &Objective, role: Role, most_touches: usize) -> (usize, usize) {
+        let terms = objective.terms.iter().filter(|term| term.spec.role == role && !is_large(term));
         let largest = terms.map(|term| term.family.mean_size()).fold(1.0, f64::max) as usize;
         let fewest = self.draws.len().div_ceil(FEWEST_CHUNKS).max(1);
         let per_chunk = (CHUNK_TOUCHES / largest).clamp(1, CHUNK).min(fewest);
-        (per_chunk, (TOUCHES_IN_FLIGHT / (largest * per_chunk)).clamp(2, IN_FLIGHT))
+        (per_chunk, (most_touches / (largest * per_chunk)).clamp(2, IN_FLIGHT))
     }
 
-    /// Shares up to `chunks` times `per_chunk` draws, from `begin` on, among chunks. Returns where they end.
-    fn share(&mut self, begin: usize, per_chunk: usize, chunks: usize) -> usize {
+    /// Shares the next draws among up to `chunks` chunks of `per_chunk`.
+    fn share(&mut self, per_chunk: usize, chunks: usize) {
+        let begin = self.shared;
         let end = self.draws.len().min(begin.saturating_add(per_chunk.saturating_mul(chunks)));
         self.waiting = (end - begin).div_ceil(per_chunk);
         self.chunks.resize_with(self.chunks.len().max(self.waiting), Chunk::default);
@@ -101,7 +107,12 @@ impl Batch {
             let first = begin + index * per_chunk;
             chunk.draws = first..end.min(first + per_chunk);
         }
-        end
+        self.shared = end;
+    }
+
+    /// Whether all draws have been shared among chunks.
+    fn is_done(&self) -> bool {
+        self.shared == self.draws.len()
     }
 
     /// Chunks to be filled, with all draws and their order.
@@ -126,6 +137,30 @@ impl Batch {
     }
 }
 
+/// Whether subsets of a term come one after the other, and share their sorts between threads.
+fn is_large(term: &PlannedTerm) -> bool {
+    term.family.mean_size() >= long::SHARED as f64
+}
+
+/// Transports the subsets of chunks, in parallel.
+fn fill<'a>(
+    chunks: impl IndexedParallelIterator<Item = (&'a mut Chunk, &'a [Draw], &'a [u64])>,
+    arch: Arch,
+    scratch: &mut Vec<Mutex<Option<Scratch>>>,
+    (objective, seed, step, points): (&Objective, u64, u64, &[f32]),
+) {
+    scratch.resize_with(rayon::current_num_threads().max(scratch.len()), Mutex::default);
+    let scratch = scratch.as_slice();
+    chunks.with_max_len(1).for_each(|(chunk, draws, order)| {
+        let own = &scratch[rayon::current_thread_index().unwrap_or(0)];
+        let taken = own.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let mut mine = taken.unwrap_or_default();
+        let draws = in_order(draws, &order[chunk.draws.clone()]);
+        arch.dispatch(Transport { objective, seed, step, points, draws, chunk, scratch: &mut mine });
+        *own.lock().unwrap_or_else(PoisonError::into_inner) = Some(mine);
+    });
+}
+
 /// Draws by the numbers in the low bits of `order`.
 fn in_order<'a>(draws: &'a [Draw], order: &'a [u64]) -> impl Iterator<Item = &'a Draw> {
     order.iter().map(|&key| &draws[key as u32 as usize])
@@ -146,7 +181,8 @@ impl Engine {
 
     /// Transports the slices that are picked in a step from `points`, in one role or in both. What they pull waits for
     /// [`Engine::add_up`]; but where the first of the roles has more than should be kept waiting, most of that is added to
-    /// `pull`, which has one entry per coordinate. The largest balanced subsets wait for [`Engine::pull_of_large`].
+    /// `pull`, which has one entry per coordinate. What the second has more than that is left to
+    /// [`Engine::transport_rest`], the largest balanced subsets to [`Engine::pull_of_large`].
     pub(crate) fn transport(
         &mut self,
         objective: &Objective,
@@ -166,35 +202,47 @@ impl Engine {
         }
         self.pull_of_large(objective, (seed, step, Role::Descend), points, pull);
         let Self { arch, descended, balanced, scratch, .. } = self;
-        scratch.resize_with(rayon::current_num_threads().max(scratch.len()), Mutex::default);
-        let scratch = scratch.as_slice();
         let (first, first_role, other, other_role) = match picks.first().map(|pick| pick.role()) {
             Some(Role::Balance) => (balanced, Role::Balance, descended, Role::Descend),
             _ => (descended, Role::Descend, balanced, Role::Balance),
         };
-        let (per_chunk, _) = other.cut(objective, other_role);
-        other.share(0, per_chunk, usize::MAX);
-        let (per_chunk, in_flight) = first.cut(objective, first_role);
-        let mut begin = 0;
+        let (per_chunk, in_flight) = other.sizes(objective, other_role, TOUCHES_WAITING);
+        other.share(per_chunk, in_flight);
+        let (per_chunk, in_flight) = first.sizes(objective, first_role, TOUCHES_IN_FLIGHT);
+        let in_flight = in_flight.max(rayon::current_num_threads());
+        let mut others = other.waiting;
         loop {
-            let others = if begin == 0 { other.waiting } else { 0 };
-            begin = first.share(begin, per_chunk, in_flight);
+            first.share(per_chunk, in_flight);
             // The other role's come first: they may be the longest.
             let chunks = other.in_flight().take(others).chain(first.in_flight());
-            chunks.with_max_len(1).for_each(|(chunk, draws, order)| {
-                let worker = rayon::current_thread_index().unwrap_or(0);
-                let scratch = &mut *scratch[worker].lock().unwrap_or_else(PoisonError::into_inner);
-                let draws = in_order(draws, &order[chunk.draws.clone()]);
-                arch.dispatch(Transport { objective, seed, step, points, draws, chunk, scratch });
-            });
+            fill(chunks, *arch, scratch, (objective, seed, step, points));
             other.waiting()[..others].iter().for_each(|chunk| count(chunk, other_role, pull));
             first.waiting().iter().for_each(|chunk| count(chunk, first_role, pull));
-            if begin == first.draws.len() {
+            if first.is_done() {
                 return;
             }
+            others = 0;
             let samples = samples_per_part(points.len() / objective.dims, first.touches());
             pull.part(objective.dims).for_each(samples, &|mut part| first.add_up(objective, &mut part));
         }
+    }
+
+    /// Transports the next of the balanced slices of a step that were too many to wait with the others. Returns whether there
+    /// are any, which wait for [`Engine::add_up`] now.
+    pub(crate) fn transport_rest(
+        &mut self,
+        objective: &Objective,
+        (seed, step): (u64, u64),
+        points: &[f32],
+        pull: &mut Pull,
+    ) -> bool {
+        let Self { arch, descended, balanced, scratch, .. } = self;
+        descended.waiting = 0;
+        let (per_chunk, in_flight) = balanced.sizes(objective, Role::Balance, TOUCHES_WAITING);
+        balanced.share(per_chunk, in_flight);
+        fill(balanced.in_flight(), *arch, scratch, (objective, seed, step, points));
+        balanced.waiting().iter().for_each(|chunk| count(chunk, Role::Balance, pull));
+        balanced.waiting > 0
     }
 
     /// Transports the largest subsets of a role, one after the other, and adds what they pull to `pull`. Returns whether

@@ -118,6 +118,14 @@ mod tests {
     }
 
     #[test]
+    fn dimensions_that_cannot_be_mapped_are_named() {
+        let table = SampleTable::white_noise(Extent::points(3), 2, 0).unwrap();
+        let error = |dims| table.mapped(Mapping::Disc, dims).unwrap_err();
+        assert_eq!(error([0, 2]), ConfigError::NoSuchDimension { group: 0, dimension: 2, dims: 2 });
+        assert_eq!(error([1, 1]), ConfigError::RepeatedDimension { group: 0, dimension: 1 });
+    }
+
+    #[test]
     fn vectors_have_their_length() {
         for (u, v) in [(0.0, 0.0), (0.5, 0.5), (0.999_999_9, 0.0), (0.3, 0.8)] {
             for mapping in [Mapping::Sphere, Mapping::CosineHemisphere] {

@@ -12,7 +12,7 @@ use crate::kernel::{Kernel, Tap};
 use crate::lattice::Extent;
 use crate::plan::{PlannedTerm, classes, share_work};
 use crate::table::SampleTable;
-use crate::target::Target;
+use crate::target::{Target, kronecker_steps};
 use crate::term::{DimensionGroup, Role, Slicing, Term};
 use crate::transport::Workspace;
 
@@ -126,7 +126,7 @@ impl Objective {
         slicing.validate()?;
         let (mut planned, mut banks) = (Vec::new(), Banks::default());
         for (index, term) in terms.iter().enumerate() {
-            planned.push(PlannedTerm::new(
+            planned.extend(PlannedTerm::new(
                 index,
                 term,
                 extent,
@@ -135,6 +135,9 @@ impl Objective {
                 wanted.clone(),
                 &mut banks,
             )?);
+        }
+        if planned.is_empty() {
+            return Err(ConfigError::NoDemand);
         }
         share_work(&mut planned, extent, slicing);
         Ok(Self { extent, dims, domains: domains.to_vec(), terms: planned, wanted })
@@ -210,8 +213,14 @@ impl Objective {
             _ => 0.0,
         };
         let lattice: f64 = self.terms.iter().map(slices).sum();
-        let all: f64 = self.terms.iter().map(PlannedTerm::slices).sum();
-        (if lattice > 0.0 { lattice } else { all }) / classes(&self.terms, self.extent) as f64
+        if lattice > 0.0 {
+            return lattice / classes(&self.terms, self.extent) as f64;
+        }
+        let descended = |term: &&PlannedTerm| term.spec.role == Role::Descend;
+        let any = self.terms.iter().any(|term| descended(&term));
+        let counted = || self.terms.iter().filter(|term| !any || descended(term));
+        let slices: f64 = counted().map(PlannedTerm::slices).sum();
+        slices / counted().map(|term| term.family.visited()).sum::<usize>() as f64
     }
 
     /// All slices at once: the squared sliced Cramér distance between filtered samples and target, meant over pixels, and
@@ -310,7 +319,9 @@ impl Objective {
         }));
     }
 
-    /// Makes white noise noise of the targets: each sample is drawn from that of the smallest classes that hold it.
+    /// Places samples by their targets: each by that of the smallest classes that hold it, whose samples become a Kronecker
+    /// sequence at a random place, warped into the target. Parts of a target then hold as many samples as they should, up to
+    /// one or two: no slice brings one from one part to another without leaving others on the way.
     pub(crate) fn place(&self, points: &mut [f32]) {
         let mut terms: Vec<&PlannedTerm> =
             self.terms.iter().filter(|term| term.spec.role == Role::Descend).collect();
@@ -319,18 +330,22 @@ impl Objective {
         }
         terms.sort_by(|a, b| b.family.mean_size().total_cmp(&a.family.mean_size()));
         let noise = points.to_vec();
-        let mut samples = Vec::new();
+        let (mut samples, mut place) = (Vec::new(), Vec::new());
         for term in terms {
             let Some(warp) = term.spec.target.warp() else { continue };
+            let steps = kronecker_steps(term.spec.dims.len());
             for index in 0..term.family.visited() {
                 term.family.select(term.family.visited_member(index), 0.0, &mut samples);
-                for &sample in &samples {
+                let Some(&origin) = samples.first() else { continue };
+                let shift = |dim: &usize| f64::from(noise[origin as usize * self.dims + dim]);
+                for (rank, &sample) in samples.iter().enumerate() {
                     let first = sample as usize * self.dims;
-                    let mut place: Vec<f64> =
-                        term.spec.dims.iter().map(|dim| f64::from(noise[first + dim])).collect();
+                    let along = term.spec.dims.iter().map(shift).zip(&steps);
+                    place.clear();
+                    place.extend(along.map(|(shift, step)| (shift + rank as f64 * step).fract()));
                     warp.place(&mut place);
-                    for (dim, place) in term.spec.dims.iter().zip(place) {
-                        points[first + dim] = Domain::Interval.admit(place as f32);
+                    for (dim, place) in term.spec.dims.iter().zip(&place) {
+                        points[first + dim] = Domain::Interval.admit(*place as f32);
                     }
                 }
             }

@@ -139,13 +139,15 @@ impl Optimizer {
         Ok(optimizer)
     }
 
-    /// Goes on from this table instead of what was reached.
+    /// Goes on from this table instead of what was reached, with fresh moments.
     ///
     /// # Errors
     /// A table whose shape is not that of the configuration.
     pub fn start_from(&mut self, table: SampleTable) -> Result<(), ConfigError> {
         self.objective.check_table(&table)?;
         self.points = table.into_values();
+        self.walker = Walker::new(self.config.descent, self.points.len());
+        self.sweeper = None;
         Ok(())
     }
 
@@ -172,8 +174,8 @@ impl Optimizer {
     /// Takes one step: descends with step size `rate`, then balances with `balance`. Returns the root mean square
     /// displacement before it along the descended slices, and the number of slices drawn.
     ///
-    /// All slices are drawn of the table as it is before the step, but for balanced subsets of 131,072 samples or more:
-    /// those see what the others have made of it.
+    /// All slices see the table as it is before the step, but for balanced subsets of classes of 131,072 samples or more in the
+    /// mean, and for those of a step that hold more than a million samples together: they see what the others have made of it.
     ///
     /// For schedules of your own; [`Optimizer::run`] follows those of the configuration.
     pub fn step(&mut self, rate: f64, balance: f64) -> (f64, u64) {
@@ -188,8 +190,8 @@ impl Optimizer {
     }
 
     /// Moves the samples by the picked slices of a step: first those that descend with step size `rate`, then those
-    /// that balance, `share` of the way. All see the table as it is before, so that threads meet twice only; but the
-    /// largest of those that balance see it after the others.
+    /// that balance, `share` of the way. All see the table as it is before, so that threads meet twice only; but where those
+    /// that balance are very many, or very large, the later ones see what the others have made of it.
     fn advance(&mut self, step: u64, picks: &[Pick], rate: f64, share: f64) {
         let Self { engine, objective, config, points, pull, walker, .. } = self;
         let Config { domains, seed, dims, .. } = config;
@@ -210,6 +212,13 @@ impl Optimizer {
                 descent::project(share, domains, &mut part);
             }
         });
+        while engine.transport_rest(objective, (*seed, step), points, pull) {
+            let table = Part { points, ..pull.part(dims) };
+            table.for_each(engine.samples_per_part(samples), &|mut part| {
+                engine.add_up(objective, Role::Balance, &mut part);
+                descent::project(share, domains, &mut part);
+            });
+        }
         if engine.pull_of_large(objective, (*seed, step, Role::Balance), points, pull) {
             let table = Part { points, ..pull.part(dims) };
             table.for_each(engine.samples_per_part(samples), &|mut part| {
@@ -299,6 +308,8 @@ impl Optimizer {
         until: Until,
         mut observe: impl FnMut(&StepReport) -> ControlFlow<()>,
     ) -> Result<RunReport, ConfigError> {
+        // A closure that panicked in an earlier run may have left one behind.
+        self.sweeper = None;
         let work = self.plan(until)?;
         let per_step = self.objective.slices_per_class_and_step();
         let batches = (work.slices_per_class as f64 / per_step).ceil() as u64;
@@ -415,6 +426,7 @@ impl Optimizer {
         let mut outcome = Ok(0.0);
         let seconds = mean_seconds(|| outcome = self.sweep_in_pool(0.0, 0.0));
         self.swept = swept;
+        self.sweeper = None;
         outcome.map(|_| seconds)
     }
 }

@@ -44,6 +44,7 @@ const VISITS: usize = 16;
 const LEVELS: usize = 4;
 
 impl PlannedTerm {
+    /// Plans a term; `None` if no demand touches any of its classes.
     pub(crate) fn new(
         index: usize,
         term: &Term,
@@ -52,7 +53,7 @@ impl PlannedTerm {
         slicing: &Slicing,
         wanted: Wanted,
         banks: &mut Banks,
-    ) -> Result<Self, ConfigError> {
+    ) -> Result<Option<Self>, ConfigError> {
         let dims = domains.len();
         if !(term.weight > 0.0 && term.weight.is_finite()) {
             let expected = "above 0 and finite";
@@ -84,6 +85,9 @@ impl PlannedTerm {
             return Err(ConfigError::TargetOnTorus { term: index, dimension });
         }
         let family = Family::new(&term.classes, extent, wanted)?;
+        if family.visited() == 0 {
+            return Ok(None);
+        }
         let sizes = family.sizes();
         // A subset that is not sorted in lanes gains nothing from sharing its directions.
         let long = sizes[0] > LONGEST;
@@ -106,7 +110,7 @@ impl PlannedTerm {
         };
         let scales = term.target.scales(term.dims.len());
         let stretch = scales.iter().map(|scale| (1.0 / (scale * scale)) as f32).collect();
-        Ok(Self {
+        Ok(Some(Self {
             spec: term.clone(),
             family,
             slicer,
@@ -117,7 +121,7 @@ impl PlannedTerm {
             rate: 0.0,
             steady: false,
             pull: 1.0,
-        })
+        }))
     }
 
     /// Slices that a step draws, in the mean.

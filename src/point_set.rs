@@ -16,7 +16,8 @@ use crate::term::{Role, Term};
 pub enum Subsets {
     /// Each label, and all of them together.
     EachAndAll,
-    /// Every set of labels but the empty one: 3 classes for two labels, 7 for three, 15 for four.
+    /// Every set of labels but the empty one: 3 classes for two labels, 7 for three, 15 for four. Beyond 12 labels that
+    /// would be thousands: there it is each label, and all of them together.
     Every,
     /// These.
     Given(Vec<Vec<u32>>),
@@ -29,10 +30,12 @@ impl Subsets {
         match self {
             Subsets::Given(given) => given.clone(),
             Subsets::EachAndAll if labels == 1 => vec![all()],
-            Subsets::EachAndAll => all().into_iter().map(|label| vec![label]).chain([all()]).collect(),
-            Subsets::Every => {
+            _ if *self == Subsets::EachAndAll || labels > MOST_LABELS => {
+                all().into_iter().map(|label| vec![label]).chain([all()]).collect()
+            }
+            _ => {
                 let held = |set: u64| all().into_iter().filter(move |label| set >> label & 1 == 1).collect();
-                (1..1_u64 << labels.min(MOST_LABELS)).map(held).collect()
+                (1..1_u64 << labels).map(held).collect()
             }
         }
     }

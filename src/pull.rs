@@ -1,4 +1,4 @@
-//! What the slices of a step want of the samples: the one thing that transport hands to descent.
+//! What the slices of a step want of the samples, summed: what transport hands to descent.
 
 use crate::part::Part;
 
@@ -12,7 +12,7 @@ pub(crate) struct Pull {
     pub hits: Vec<f32>,
     /// Slices of the step.
     pub slices: u64,
-    /// Sum over slices and samples of `mass · displacement²`, and of `mass`.
+    /// Sum over the descended slices and their samples of `mass · displacement²`, and of `mass`.
     pub squares: f64,
     /// See `squares`.
     pub mass: f64,

@@ -35,7 +35,7 @@ pub enum Role {
     /// All such terms together are descended.
     #[default]
     Descend,
-    /// After each step of the descent, samples move all the way to their targets along the slices of the term
+    /// After each step of the descent, samples move all the way to where the slices of the term wanted them before it
     /// (times [`crate::Config::balance`]): alternating projections rather than a compromise of weights. Meant for few
     /// slices of large classes, whose small but systematic displacements a compromise would drown.
     Balance,

@@ -3,7 +3,10 @@
 
 use std::ops::ControlFlow;
 
-use fsot::{Config, Descent, Ended, Extent, Optimizer, Role, SampleTable, StepReport, Until, Work, metrics};
+use fsot::{
+    Config, Descent, Ended, Extent, Lengths, Optimizer, Role, SampleTable, StepReport, Subsets, Until, Work,
+    metrics,
+};
 
 fn config(extent: [usize; 4], dims: usize, descent: Descent, seed: u64) -> Config {
     let [frames, height, width, spp] = extent;
@@ -26,8 +29,8 @@ fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(work)
 }
 
-/// Shapes whose steps hold many chunks of subsets, long subsets, several groups, and a table large enough for the
-/// parallel sort and for several tasks of the descent.
+/// Shapes whose steps hold many chunks of subsets, long subsets, several groups, and a table large enough for several
+/// parts.
 fn cases() -> Vec<Config> {
     vec![
         config([1, 64, 64, 1], 2, Descent::barycentric(), 1),
@@ -37,6 +40,32 @@ fn cases() -> Vec<Config> {
         config([1, 24, 24, 1], 4, Descent::sgd(), 5),
         config([2, 20, 20, 1], 3, Descent::adam(), 6),
     ]
+}
+
+/// Subsets that share their sorts between threads: alone, and in flight with others, where a worker that waits for a part of
+/// its sort is lent to another subset. Balanced subsets that are too many to wait, and one that is too large.
+#[test]
+fn threads_do_not_change_a_bit_of_large_subsets() {
+    let configs = [
+        Config::classes(&[20_000; 10], 2, &Subsets::EachAndAll),
+        Config::progressive(200_000, 2, Lengths::PowersOfTwo),
+        config([40, 60, 60, 1], 2, Descent::barycentric(), 1),
+    ];
+    for config in configs {
+        let run = |threads| {
+            with_threads(threads, || {
+                let mut optimizer = optimizer(&config);
+                let (displacement, slices) = optimizer.step(1.0, 1.0);
+                if config.extent.frames > 1 {
+                    optimizer.sweep(1.0, 1.0).unwrap();
+                }
+                (bits(&optimizer.table()), displacement.to_bits(), slices)
+            })
+        };
+        let alone = run(1);
+        assert_ne!(alone.0, bits(&optimizer(&config).table()));
+        assert!(run(4) == alone, "{:?}", config.extent);
+    }
 }
 
 #[test]

@@ -17,8 +17,10 @@ mod report;
 mod sheet;
 mod shelf;
 
+use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::Duration;
 
 use clap::Parser;
 use contenders::Contender;
@@ -116,6 +118,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut scale = if arguments.quick { quick() } else { full() };
     if !arguments.spp.is_empty() {
         scale.spps.clone_from(&arguments.spp);
+        scale.spps.sort_unstable();
+        scale.spps.dedup();
     }
     std::fs::create_dir_all(out)
         .map_err(|error| format!("cannot create {}: {error}; choose another --out", out.display()))?;
@@ -124,9 +128,11 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let recipes = Shelf::recipes(&scale)?;
     let work = recipes.len() + Contender::ALL.len() * trials(&scale).len();
     let progress = ProgressBar::new(work as u64).with_style(style);
+    progress.enable_steady_tick(Duration::from_secs(1));
+    let csv = out.join("lecture.csv");
     let mut shelf = Shelf::new(scale.clone(), *seed);
     for recipe in recipes {
-        progress.set_message(format!("table: {recipe}"));
+        tell(&progress, format!("table: {recipe}"));
         shelf.make(recipe)?;
         progress.inc(1);
     }
@@ -136,7 +142,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     for (trial, spp) in trials(&scale) {
         let same = setting.as_ref().is_some_and(|(made, _)| *made == trial);
         if !same {
-            progress.set_message(format!("reference: {}", trial.scene));
+            tell(&progress, format!("reference: {}", trial.scene));
             setting = Some((trial, measure::Setting::new(&trial, &scale)?));
         }
         let Some((_, setting)) = &setting else { continue };
@@ -146,7 +152,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             let repeats = scale.repeats[usize::from(trial.animated)];
             let mut first = None;
             for repeat in 0..repeats {
-                let Some(film) = contender.render(&shelf, setting, spp, seed + repeat)? else { continue };
+                let Some(film) = contender.render(&shelf, setting, spp, repeat)? else { continue };
                 for (stage, ratio) in setting.ratios(&film, spp)? {
                     report.add(contender, trial.scene, stage, spp, ratio);
                 }
@@ -163,14 +169,28 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         sheet::draw(setting, spp, &shown)?
             .save(&path)
             .map_err(|error| format!("cannot write {}: {error}; choose another --out", path.display()))?;
+        // After each trial, so that a run that is cut off keeps what it has.
+        std::fs::write(&csv, report.csv())
+            .map_err(|error| format!("cannot write {}: {error}; choose another --out", csv.display()))?;
+        tell(&progress, format!("{} {kind}, {spp} spp: done", trial.scene));
     }
     progress.finish_and_clear();
-    report.print(&mut std::io::stdout().lock(), &scale.spps)?;
-    let path = out.join("lecture.csv");
-    std::fs::write(&path, report.csv())
-        .map_err(|error| format!("cannot write {}: {error}; choose another --out", path.display()))?;
-    println!("figures by scene: {}; contact sheets beside it", path.display());
+    let mut stdout = std::io::stdout().lock();
+    report.print(&mut stdout, &scale.spps)?;
+    writeln!(stdout, "\nseconds that the tables took:")?;
+    for (recipe, seconds) in shelf.seconds() {
+        writeln!(stdout, "{seconds:7.1}  {recipe}")?;
+    }
+    writeln!(stdout, "figures by scene: {}; contact sheets beside it", csv.display())?;
     Ok(())
+}
+
+/// Shows what happens; as plain lines where nobody sees a bar.
+fn tell(progress: &ProgressBar, message: String) {
+    if progress.is_hidden() {
+        eprintln!("{}/{} {message}", progress.position(), progress.length().unwrap_or(0));
+    }
+    progress.set_message(message);
 }
 
 /// What is rendered, in order.

@@ -71,7 +71,17 @@ pub struct Setting {
     pub scene: Scene,
     pub resolution: [usize; 2],
     pub reference: Reference,
-    stages: Vec<(Stage, Smoother, Film, f64)>,
+    stages: Vec<Smoothed>,
+}
+
+/// A stage: what smooths, the smoothed truth, what white noise of one sample per pixel leaves, and what the reference's own
+/// error does.
+struct Smoothed {
+    stage: Stage,
+    smoother: Smoother,
+    truth: Film,
+    white: f64,
+    floor: f64,
 }
 
 /// Guards relative errors where the truth is dark, as in `fsot::render::Comparison`.
@@ -108,12 +118,20 @@ impl Setting {
                 (Stage::Denoised, Smoother::Denoiser(Denoiser::default(), guides)),
             ]
         };
+        let squared = reference.standard_error.values().iter().map(|error| error * error).collect();
+        let squared = Film::new(reference.standard_error.shape(), squared)?;
         let mut stages = Vec::new();
         for (stage, smoother) in smoothers {
             let truth = smoother.apply(&reference.mean)?;
             let white = smoother.apply_to_variance(&reference.variance)?;
             let white = relative(&white, &truth, |variance| variance);
-            stages.push((stage, smoother, truth, white));
+            // A reference that is repeated errs alike in all frames: no average over time lessens that.
+            let floor = match trial.animated && !moves {
+                true => Smoother::Filter(ImageFilter::gaussian(2.1)?).apply_to_variance(&squared)?,
+                false => smoother.apply_to_variance(&squared)?,
+            };
+            let floor = relative(&floor, &truth, |variance| variance);
+            stages.push(Smoothed { stage, smoother, truth, white, floor });
         }
         Ok(Self { scene, resolution, reference, stages })
     }
@@ -125,12 +143,13 @@ impl Setting {
     }
 
     /// Mean over pixels and frames of the smoothed error, squared and relative to the smoothed truth, over that of white
-    /// noise. The smoothers are linear, so their own blur does not count.
+    /// noise. The smoothers are linear, so their own blur does not count; what the reference's own error is expected to
+    /// add is taken off.
     pub fn ratios(&self, film: &Film, spp: u32) -> Result<Vec<(Stage, f64)>, Failure> {
         let error = self.error(film)?;
-        let ratio = |(stage, smoother, truth, white): &(Stage, Smoother, Film, f64)| {
+        let ratio = |Smoothed { stage, smoother, truth, white, floor }: &Smoothed| {
             let smoothed = smoother.apply(&error)?;
-            let value = relative(&smoothed, truth, |error| error * error);
+            let value = relative(&smoothed, truth, |error| error * error) - floor;
             Ok((*stage, value * f64::from(spp) / white))
         };
         self.stages.iter().map(ratio).collect()

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::ops::ControlFlow;
+use std::time::Instant;
 
 use fsot::sampler::{DitherMask, Fast, ScramblingKeys, Stbn, stratified};
 use fsot::{Config, DimensionGroup, Extent, Form, Kernel, Objective, Optimizer, SampleTable};
@@ -17,7 +18,10 @@ pub enum Maker {
     Dither,
     Keys,
     Stbn,
+    /// FAST, for the eye's filter: in space alone for one frame, in space and time for more.
     Fast,
+    /// FAST, for temporal antialiasing.
+    FastTaa,
     /// Ours, for the eye's filter: in space alone for one frame, in space and time for more.
     Ours,
     /// Ours, for temporal antialiasing.
@@ -41,6 +45,7 @@ impl fmt::Display for Recipe {
             Maker::Keys => "scrambling keys",
             Maker::Stbn => "STBN",
             Maker::Fast => "FAST",
+            Maker::FastTaa => "FAST for TAA",
             Maker::Ours => "ours",
             Maker::OursTaa => "ours for TAA",
         };
@@ -50,19 +55,19 @@ impl fmt::Display for Recipe {
 
 pub struct Shelf {
     pub scale: Scale,
-    seed: u64,
+    pub seed: u64,
     tables: BTreeMap<Recipe, SampleTable>,
+    seconds: Vec<(Recipe, f64)>,
 }
 
 impl Shelf {
     pub fn new(scale: Scale, seed: u64) -> Self {
-        Self { scale, seed, tables: BTreeMap::new() }
+        Self { scale, seed, tables: BTreeMap::new(), seconds: Vec::new() }
     }
 
     /// All tables that the scenes need.
     pub fn recipes(scale: &Scale) -> Result<BTreeSet<Recipe>, Failure> {
         let mut recipes = BTreeSet::new();
-        let most = scale.spps.iter().max().map_or(1, |spp| spp.next_power_of_two() as usize);
         let stills = scale.still_scenes.iter().map(|scene| (scene, false));
         for (name, animated) in stills.chain(scale.animated_scenes.iter().map(|scene| (scene, true))) {
             let dims = scene(name)?.dims();
@@ -70,11 +75,15 @@ impl Shelf {
             let mut add = |maker, dims, spp, frames| recipes.insert(Recipe { maker, dims, spp, frames });
             add(Maker::Dither, 1, 1, 1); // the mask of a-posteriori methods
             add(Maker::Dither, dims, 1, 1);
-            add(Maker::Keys, dims, most, 1);
             add(Maker::Stbn, 2, 1, scale.tile_frames);
-            add(Maker::Fast, 2, 1, frames);
+            add(Maker::Fast, 2, 1, 1);
+            if animated {
+                add(Maker::Fast, 2, 1, frames);
+                add(Maker::FastTaa, 2, 1, frames);
+            }
             for &spp in &scale.spps {
                 add(Maker::Stratified, dims, spp as usize, 1);
+                add(Maker::Keys, dims, spp.next_power_of_two() as usize, 1);
                 add(Maker::Ours, dims, spp as usize, 1);
                 if animated {
                     add(Maker::Ours, dims, spp as usize, frames);
@@ -93,6 +102,7 @@ impl Shelf {
         let side = if long { tile / 2 } else { tile };
         let extent = Extent { frames, height: side, width: side, spp };
         let seed = self.seed;
+        let begin = Instant::now();
         let sweeps = |sweeps: u64| (sweeps as f64 * effort).ceil() as u64;
         let table = match maker {
             Maker::Stratified => stratified(extent, dims, seed)?,
@@ -111,21 +121,29 @@ impl Shelf {
                 mask.cooling.sweeps = sweeps(100);
                 mask.table()?
             }
-            Maker::Fast => {
+            Maker::Fast | Maker::FastTaa => {
                 let mut table = Fast { seed, ..Fast::new(extent, dims) };
+                if maker == Maker::FastTaa {
+                    table.kernels = vec![for_taa()];
+                }
                 table.cooling.sweeps = sweeps(if frames > 1 { 150 } else { 2000 });
                 table.table()?
             }
             Maker::Ours => ours(Config { seed, ..Config::new(extent, dims) }, tile, effort)?,
             Maker::OursTaa => {
                 let groups = DimensionGroup::pairs_and_whole(dims);
-                let kernel = Kernel::product(SpatialKernel::Gaussian { sigma_px: 2.1 }, measure::taa());
-                let terms = Objective::blue_noise(&[kernel], Form::LevelSets, &groups, &extent);
+                let terms = Objective::blue_noise(&[for_taa()], Form::LevelSets, &groups, &extent);
                 ours(Config { seed, terms, ..Config::new(extent, dims) }, tile, effort)?
             }
         };
+        self.seconds.push((recipe, begin.elapsed().as_secs_f64()));
         self.tables.insert(recipe, table);
         Ok(())
+    }
+
+    /// What the tables took, in the order of their making.
+    pub fn seconds(&self) -> &[(Recipe, f64)] {
+        &self.seconds
     }
 
     /// A table that was made.
@@ -145,6 +163,11 @@ fn ours(config: Config, tile: usize, effort: f64) -> Result<SampleTable, Failure
     let mut optimizer = Optimizer::new(config)?;
     optimizer.run(Until::Work(Work { slices_per_class, sweeps }), |_| ControlFlow::Continue(()))?;
     Ok(optimizer.into_table())
+}
+
+/// The eye's spatial filter times the history of temporal antialiasing.
+fn for_taa() -> Kernel {
+    Kernel::product(SpatialKernel::Gaussian { sigma_px: 2.1 }, measure::taa())
 }
 
 /// The kernel of the eye over frames at 60 per second.

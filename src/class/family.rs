@@ -93,10 +93,21 @@ impl Family {
         if let Shape::Listed(listed) = &family.shape {
             family.visited = listed.visited();
         } else if let Wanted::Some(flags) = &wanted {
-            // Every wanted site is held as often as before, but by fewer classes.
             let visited = family.holding(flags);
-            let share = flags.iter().filter(|&&flag| flag).count() as f64 / extent.sites() as f64;
-            family.mean_size *= share * family.members() as f64 / visited.len().max(1) as f64;
+            family.mean_size = match &family.shape {
+                Shape::Prefixes { prefixes, .. } => {
+                    let held = |&member: &u32| {
+                        let run = prefixes.run(member as usize);
+                        run.filter(|&sample| flags[sample as usize / extent.spp]).count()
+                    };
+                    visited.iter().map(held).sum::<usize>() as f64 / visited.len().max(1) as f64
+                }
+                _ => {
+                    // Every wanted site is held as often as before, but by fewer classes.
+                    let share = flags.iter().filter(|&&flag| flag).count() as f64 / extent.sites() as f64;
+                    family.mean_size * share * family.members() as f64 / visited.len().max(1) as f64
+                }
+            };
             family.visited = Some(visited);
         }
         Ok(family)

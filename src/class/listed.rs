@@ -62,7 +62,7 @@ impl Listed {
             listed.begin(subset.weight);
             listed.samples.extend(samples);
         }
-        listed.finish("sets of labels")
+        listed.finish("sets of labels", wanted)
     }
 
     pub(super) fn ramps(
@@ -83,7 +83,7 @@ impl Listed {
             };
             listed.add(demanded(extent, wanted).map(|sample| (sample, weight(sample))).collect(), 1.0);
         }
-        listed.finish("ramps")
+        listed.finish("ramps", wanted)
     }
 
     pub(super) fn custom(
@@ -114,7 +114,7 @@ impl Listed {
             member.samples.retain(|&(sample, _)| wanted.site(sample as usize / extent.spp));
             listed.add(member.samples, member.weight);
         }
-        listed.finish("the caller's classes")
+        listed.finish("the caller's classes", wanted)
     }
 
     fn begin(&mut self, emphasis: f64) {
@@ -132,9 +132,10 @@ impl Listed {
         self.weights.extend(weighed.iter().map(|&(_, weight)| (weight / largest) as f32));
     }
 
-    fn finish(mut self, family: &'static str) -> Result<Self, ConfigError> {
+    /// Classes that no demand touches are no mistake, but classes without any sample.
+    fn finish(mut self, family: &'static str, wanted: &Wanted) -> Result<Self, ConfigError> {
         self.starts.push(self.samples.len());
-        if self.samples.is_empty() {
+        if self.samples.is_empty() && matches!(wanted, Wanted::All) {
             return Err(ConfigError::NoClasses { family });
         }
         if self.weights.iter().all(|&weight| weight == 1.0) {

@@ -84,7 +84,7 @@ pub(crate) struct Sweeper {
     /// Runs that hold a demanded sample, in the order of this sweep.
     order: Vec<u32>,
     pulls: Vec<Row>,
-    /// Whether samples have moved since the table was read.
+    /// Whether samples have moved since the table was read or written.
     ahead: bool,
 }
 

@@ -79,8 +79,16 @@ fn correlation(a: &[f64], b: &[f64]) -> f64 {
     let product = |x: &[f64], mean_x: f64, y: &[f64], mean_y: f64| -> f64 {
         x.iter().zip(y).map(|(x, y)| (x - mean_x) * (y - mean_y)).sum()
     };
-    let spread = (product(a, mean_a, a, mean_a) * product(b, mean_b, b, mean_b)).sqrt();
-    if spread > 0.0 { product(a, mean_a, b, mean_b) / spread } else { 1.0 }
+    // What rounding leaves of a constant picture is none.
+    let [spread_a, spread_b] = [(a, mean_a), (b, mean_b)].map(|(values, mean)| {
+        let spread = product(values, mean, values, mean).sqrt();
+        if spread > 1e-9 * mean * (values.len() as f64).sqrt() { spread } else { 0.0 }
+    });
+    match (spread_a > 0.0, spread_b > 0.0) {
+        (true, true) => product(a, mean_a, b, mean_b) / (spread_a * spread_b),
+        (false, false) => 1.0,
+        _ => 0.0,
+    }
 }
 
 #[cfg(test)]

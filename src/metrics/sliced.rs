@@ -14,7 +14,8 @@ use crate::transport::Workspace;
 /// ([`Target::scales`]). O(directions · n log n), in parallel.
 ///
 /// # Errors
-/// No points or directions, no dimensions or not those of the target, coordinates that are not finite.
+/// No points or directions, no dimensions or not those of the target, coordinates that are not finite, a target without a
+/// finite law along some direction.
 pub fn sliced_w2(
     points: &[f64],
     dims: usize,
@@ -45,10 +46,13 @@ pub fn sliced_w2(
         let along = |point: &[f64]| point.iter().zip(&direction).map(|(x, theta)| x * theta).sum();
         let projections: Vec<f64> = points.chunks_exact(dims).map(along).collect();
         let law = target.project(&direction);
-        Workspace::default().displacements(&law, &projections, None, &mut vec![0.0; projections.len()])
+        if !law.is_sound() {
+            return Err(ConfigError::BadLaw { term: 0, direction });
+        }
+        Ok(Workspace::default().displacements(&law, &projections, None, &mut vec![0.0; projections.len()]))
     });
     // Collected first: the order of the sum must not depend on the threads.
-    let squared: Vec<f64> = squared.collect();
+    let squared: Vec<f64> = squared.collect::<Result<_, _>>()?;
     Ok((squared.iter().sum::<f64>() / directions as f64).sqrt())
 }
 

@@ -169,8 +169,10 @@ impl Denoiser {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::{Point3, Vector3};
+
     use super::*;
-    use crate::render::{Scene, render};
+    use crate::render::{Reference, Scene, render};
     use crate::sampler::WhiteNoise;
 
     const RESOLUTION: [usize; 2] = [24, 24];
@@ -219,11 +221,59 @@ mod tests {
         }
     }
 
+    /// What of 1 on the left half crosses a step in the middle, of the normal or of the plane.
+    fn leak(denoiser: Denoiser, turned: bool, off: f64) -> f64 {
+        let guide = |pixel: usize| {
+            let right = pixel % 24 >= 12;
+            let normal = if right && turned { Vector3::x() } else { Vector3::z() };
+            Some(Guide { point: Point3::new(0.0, 0.0, if right { off } else { 0.0 }), normal, depth: 1.0 })
+        };
+        let guides = [Guides::new(RESOLUTION, (0..576).map(guide).collect()).unwrap()];
+        let left = (0..576).map(|pixel| if pixel % 24 < 12 { 1.0 } else { 0.0 }).collect();
+        let after = denoiser.apply(&Film::new([1, 24, 24], left).unwrap(), &guides).unwrap();
+        after.values().iter().enumerate().filter(|(pixel, _)| pixel % 24 >= 12).map(|(_, value)| value).sum()
+    }
+
+    #[test]
+    fn nothing_crosses_a_step_of_the_normal_or_of_the_plane() {
+        let denoiser = Denoiser::default();
+        let free = leak(denoiser, false, 0.0);
+        assert!(free > 10.0, "{free}");
+        assert!(leak(denoiser, true, 0.0).abs() < 1e-12);
+        // 100 planes apart: e^-100.
+        assert!(leak(denoiser, false, 1.0).abs() < 1e-12);
+        assert!((leak(Denoiser { normal_power: 0.0, ..denoiser }, true, 0.0) - free).abs() < 1e-9);
+        assert!((leak(Denoiser { plane_share: f64::INFINITY, ..denoiser }, false, 1.0) - free).abs() < 1e-9);
+        // A third of a share apart: some of it.
+        let some = leak(denoiser, false, 0.01 / 3.0);
+        assert!(some > 0.2 * free && some < 0.95 * free, "{some} of {free}");
+    }
+
+    #[test]
+    fn guides_that_guide_nowhere_are_named() {
+        let good = Guide { point: Point3::origin(), normal: Vector3::z(), depth: 1.0 };
+        for (bad, text) in [
+            (Guide { depth: 0.0, ..good }, "depth of a guide is 0"),
+            (Guide { normal: Vector3::zeros(), ..good }, "normal is 0"),
+            (Guide { point: Point3::new(f64::NAN, 0.0, 0.0), ..good }, "point is NaN"),
+        ] {
+            let error = Guides::new([1, 1], vec![Some(bad)]).unwrap_err().to_string();
+            assert!(error.contains(text), "{error}");
+        }
+    }
+
     #[test]
     fn noise_is_reduced_and_mistakes_are_named() {
         let scene = Scene::by_name("soft_shadow").unwrap();
         let guides = guides(&scene);
         let film = render(&scene, &WhiteNoise::new(1), RESOLUTION, 1).unwrap();
+        let truth = Reference::render(&scene, RESOLUTION, 256).unwrap().mean;
+        // The filter is linear: what it makes of the noise alone.
+        let noise = film.values().iter().zip(truth.values()).map(|(value, truth)| value - truth);
+        let noise = Film::new(film.shape(), noise.collect()).unwrap();
+        let power = |film: &Film| film.values().iter().map(|value| value * value).sum::<f64>();
+        let after = Denoiser::default().apply(&noise, &guides).unwrap();
+        assert!(power(&after) < 0.5 * power(&noise), "{} {}", power(&after), power(&noise));
         let error = Denoiser::default().apply(&film, &[]).unwrap_err();
         assert!(matches!(error, RenderError::Shape { given: [0, 0, 0], expected: [1, 24, 24], .. }));
         for bad in [

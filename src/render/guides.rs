@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::error::{RenderError, not_empty};
 use super::scene::Scene;
+use crate::error::ConfigError;
 
 /// The surface in the middle of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,13 +54,34 @@ impl Guides {
     /// Guides that are known from elsewhere, row by row.
     ///
     /// # Errors
-    /// A resolution of 0; a number of guides that does not fit it.
+    /// A resolution of 0; a number of guides that does not fit it; a guide that is not finite, whose normal is not a unit vector
+    /// (to 1e-3) or whose depth is not positive.
     pub fn new([height, width]: [usize; 2], pixels: Vec<Option<Guide>>) -> Result<Self, RenderError> {
         not_empty("height", height)?;
         not_empty("width", width)?;
         let (given, expected) = (pixels.len(), height * width);
         if given != expected {
             return Err(RenderError::Length { given, expected });
+        }
+        for Guide { point, normal, depth } in pixels.iter().flatten() {
+            let checks = [
+                (
+                    "a coordinate of a guide's point",
+                    point.coords.sum(),
+                    f64::is_finite as fn(f64) -> bool,
+                    "finite",
+                ),
+                ("the length of a guide's normal", normal.norm(), |norm| (norm - 1.0).abs() < 1e-3, "of 1"),
+                (
+                    "the depth of a guide",
+                    *depth,
+                    |depth| depth > 0.0 && depth.is_finite(),
+                    "above 0 and finite",
+                ),
+            ];
+            if let Some((name, value, _, expected)) = checks.into_iter().find(|check| !check.2(check.1)) {
+                return Err(ConfigError::OutOfRange { name, value, expected }.into());
+            }
         }
         Ok(Self { height, width, pixels })
     }

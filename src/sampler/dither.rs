@@ -48,7 +48,7 @@ impl DitherMask {
 
     /// Makes the mask. The same seed gives the same bits at any number of threads.
     ///
-    /// A proposed swap costs two passes over the 88 neighbours of the default.
+    /// A proposed swap costs two passes over the some hundred neighbours of the default.
     ///
     /// # Errors
     /// An empty or oversized extent; more than one sample per pixel; a parameter outside its range.

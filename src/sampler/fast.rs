@@ -50,7 +50,7 @@ impl Fast {
 
     /// Makes the table. The same seed gives the same bits at any number of threads.
     ///
-    /// A proposed swap costs two passes over the support of `F₂`, 177 sites for one frame of the default.
+    /// A proposed swap costs two passes over the support of `F₂`, some 180 sites for one frame of the default.
     ///
     /// # Errors
     /// An empty or oversized extent; more than one sample per pixel; no kernel or a bad one; a bad cooling.

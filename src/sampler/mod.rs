@@ -21,7 +21,8 @@
 //! | [`Stbn`] | unlike values in space and in time | Wolfe et al. 2022 |
 //! | [`Fast`] | the energy distance under a filter | Donnelly et al. 2024 |
 //!
-//! The same seed gives the same table at any number of threads, and on any platform where square roots are exact.
+//! The same seed gives the same table at any number of threads. Across platforms, exponentials and powers of the standard
+//! library may round differently, and annealing amplifies that.
 
 mod anneal;
 mod dither;

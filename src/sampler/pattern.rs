@@ -6,6 +6,7 @@ use super::{Sampler, mixed};
 use crate::domain::BELOW_ONE;
 use crate::error::ConfigError;
 use crate::lattice::{MOST_DIMS, Site};
+use crate::target::kronecker_steps;
 
 /// A finite list of points of `[0, 1)^dims`.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,7 +37,8 @@ impl Pattern {
         Ok(Self { dims: generator.len(), values: values.collect() })
     }
 
-    /// The best Korobov lattice, `z = (1, a, a², …) mod n`: of all `a` the one with the least
+    /// The best Korobov lattice, `z = (1, a, a², …) mod n`: of all `a` without a divisor in common with `n`, so that every
+    /// coordinate has `n` values, the one with the least
     ///
     /// ```text
     /// P₂ = −1 + 1/n Σ_i Π_d (1 + 2π² B₂(frac(i z_d / n))),   B₂(x) = x² − x + 1/6,
@@ -64,7 +66,9 @@ impl Pattern {
             (0..n).map(|i| z.iter().map(|z| factors[(i * z % n) as usize]).product::<f64>()).sum()
         };
         // Of `a` and `n − a`, mirror images, the smaller.
-        let best = (1..=(n / 2).max(1)).map(|a| (error(a), a)).min_by(|a, b| a.0.total_cmp(&b.0));
+        let coprime = |a: &u64| gcd(*a, n) == 1;
+        let best =
+            (1..=(n / 2).max(1)).filter(coprime).map(|a| (error(a), a)).min_by(|a, b| a.0.total_cmp(&b.0));
         let generator: Vec<u64> = powers(best.map_or(1, |(_, a)| a)).collect();
         Self::rank1(points, &generator)
     }
@@ -79,9 +83,7 @@ impl Pattern {
     /// 0 points or more than 65536; 0 dimensions or more than 64.
     pub fn kronecker(points: usize, dims: usize) -> Result<Self, ConfigError> {
         check(points, MOST_POINTS, dims)?;
-        // Newton's iteration would do; this contraction cannot leave (1, 2).
-        let phi = (0..100).fold(1.5_f64, |phi, _| (1.0 + phi).powf(1.0 / (dims as f64 + 1.0)));
-        let steps: Vec<f64> = (1..=dims as i32).map(|d| phi.powi(-d)).collect();
+        let steps = kronecker_steps(dims);
         let values =
             (0..points).flat_map(|i| steps.iter().map(move |step| below_one((i as f64 * step).fract())));
         Ok(Self { dims, values: values.collect() })
@@ -112,6 +114,11 @@ impl Pattern {
     pub fn values(&self) -> &[f32] {
         &self.values
     }
+}
+
+/// The greatest common divisor (Euclid).
+pub(super) fn gcd(a: u64, b: u64) -> u64 {
+    if b == 0 { a } else { gcd(b, a % b) }
 }
 
 fn check(points: usize, most: usize, dims: usize) -> Result<(), ConfigError> {
@@ -181,6 +188,25 @@ mod tests {
             let lattice = Pattern::korobov(points, 2).unwrap();
             assert_eq!(lattice, Pattern::rank1(points, &[1, fibonacci]).unwrap());
             assert_eq!(point(&lattice, 1), [1.0 / points as f32, fibonacci as f32 / points as f32]);
+        }
+    }
+
+    #[test]
+    fn every_coordinate_of_a_lattice_has_as_many_values_as_it_has_points() {
+        for points in [1, 2, 4, 9, 16, 30] {
+            for dims in [1, 2, 4, 6] {
+                let lattice = Pattern::korobov(points, dims).unwrap();
+                for dim in 0..dims {
+                    let mut values: Vec<u32> = (0..points)
+                        .map(|i| (point(&lattice, i)[dim] * points as f32).round() as u32)
+                        .collect();
+                    values.sort_unstable();
+                    assert!(
+                        values.into_iter().eq(0..points as u32),
+                        "{points} points, dimension {dim} of {dims}"
+                    );
+                }
+            }
         }
     }
 

@@ -8,6 +8,7 @@
 
 use rand::RngExt;
 
+use super::pattern::gcd;
 use super::{Sampler, mixed};
 use crate::error::ConfigError;
 use crate::lattice::Site;
@@ -21,12 +22,14 @@ use crate::table::SampleTable;
 /// `[0, 1)`. Each pixel's result is one of its estimates, of a random rank: unbiased, and as noisy as one of them, but
 /// its error follows the mask. The price is rendering all of them. O(pixels · n log n).
 ///
-/// # Panics
-/// If there is no estimate, or one whose length is not that of the mask.
-pub fn histogram_sampling(estimates: &[&[f64]], mask: &[f32]) -> Vec<f64> {
-    assert!(!estimates.is_empty(), "histogram sampling needs at least one estimate");
+/// # Errors
+/// No estimate, or one whose length is not that of the mask.
+pub fn histogram_sampling(estimates: &[&[f64]], mask: &[f32]) -> Result<Vec<f64>, ConfigError> {
+    if estimates.is_empty() {
+        return Err(ConfigError::EmptyAxis { axis: "the number of estimates" });
+    }
     for estimate in estimates {
-        assert_eq!(estimate.len(), mask.len(), "estimates and mask have as many pixels");
+        check_pixels("the number of pixels of an estimate", estimate.len(), mask.len())?;
     }
     let mut values = Vec::new();
     let pick = |(pixel, &level): (usize, &f32)| {
@@ -35,7 +38,18 @@ pub fn histogram_sampling(estimates: &[&[f64]], mask: &[f32]) -> Vec<f64> {
         values.sort_by(f64::total_cmp);
         values[((f64::from(level) * values.len() as f64) as usize).min(values.len() - 1)]
     };
-    mask.iter().enumerate().map(pick).collect()
+    Ok(mask.iter().enumerate().map(pick).collect())
+}
+
+fn check_pixels(name: &'static str, given: usize, pixels: usize) -> Result<(), ConfigError> {
+    if given == pixels {
+        return Ok(());
+    }
+    Err(ConfigError::OutOfRange {
+        name,
+        value: given as f64,
+        expected: "for each pixel of the mask or picture",
+    })
 }
 
 /// The temporal algorithm (the paper's section 4): seeds of a picture that change places after every frame.
@@ -66,7 +80,8 @@ const BLOCK: usize = 4;
 /// How far retargeting may carry a seed in each direction, in pixels; the paper uses a radius of 6.
 const RADIUS: i64 = 6;
 
-/// By how much the mask is displaced from frame to frame, as shares of the tile: the R2 sequence.
+/// By how much the mask is displaced from frame to frame, as shares of the tile: that of the R2 sequence, up to the next number
+/// without a divisor in common with the tile's side, so that no place comes again before all have been there.
 const STEP: [f64; 2] = [0.569_840_290_998_053_3, 0.754_877_666_246_692_8];
 
 impl SeedPermutation {
@@ -113,18 +128,22 @@ impl SeedPermutation {
 
     /// The same displacement every time, so that one retargeting serves all frames.
     fn displacement(&self, frame: usize) -> [usize; 2] {
-        let step = |axis: usize| (STEP[axis] * self.tile[axis] as f64).round() as usize;
-        [0, 1].map(|axis| frame % self.tile[axis] * step(axis) % self.tile[axis])
+        [0, 1].map(|axis| {
+            let len = self.tile[axis];
+            let least = (STEP[axis] * len as f64).round() as usize;
+            let step = (least..).find(|&step| gcd(step as u64, len as u64) == 1).unwrap_or(1);
+            frame % len * step % len
+        })
     }
 
     /// Exchanges seeds after a frame was rendered with them: `values` are its pixels, row by row.
     ///
     /// O(pixels).
     ///
-    /// # Panics
-    /// If there are not as many values as pixels.
-    pub fn advance(&mut self, values: &[f64]) {
-        assert_eq!(values.len(), self.seeds.len(), "one value per pixel");
+    /// # Errors
+    /// Not as many values as pixels; nothing is exchanged then.
+    pub fn advance(&mut self, values: &[f64]) -> Result<(), ConfigError> {
+        check_pixels("the number of values", values.len(), self.seeds.len())?;
         self.sort(values);
         let [dy, dx] = self.displacement(self.frame);
         let ([tall, wide], source) = (self.tile, &self.source);
@@ -139,6 +158,7 @@ impl SeedPermutation {
         });
         self.seeds = retargeted.collect();
         self.frame += 1;
+        Ok(())
     }
 
     /// Matches the order of values to that of the mask within blocks, at an offset of this frame.
@@ -213,5 +233,53 @@ impl Sampler for SeedPermutation {
         let seed = self.seeds[site.y % self.height * self.width + site.x % self.width];
         let seed = mixed(seed.into(), &[u64::from(sample >> 16), u64::from(dim >> 8)]) as u32;
         sobol_burley::sample(sample & 0xffff, dim & 0xff, seed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lattice::Extent;
+    use crate::sampler::DitherMask;
+
+    fn correlation(pairs: &[(f64, f64)]) -> f64 {
+        let count = pairs.len() as f64;
+        let mean = |of: &dyn Fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>() / count;
+        let (x, y) = (mean(&|pair| pair.0), mean(&|pair| pair.1));
+        let moment = |of: &dyn Fn(f64, f64) -> f64| mean(&|pair| of(pair.0 - x, pair.1 - y));
+        moment(&|x, y| x * y) / (moment(&|x, _| x * x) * moment(&|_, y| y * y)).sqrt()
+    }
+
+    /// What a frame was sorted for is the mask of that frame; retargeting makes it that of the next.
+    #[test]
+    fn one_step_takes_values_from_the_mask_of_a_frame_to_that_of_the_next() {
+        let mut mask = DitherMask::new(Extent { frames: 1, height: 32, width: 32, spp: 1 }, 1);
+        mask.cooling.sweeps = 50;
+        let mask = mask.table().unwrap();
+        let mut seeds = SeedPermutation::new([64, 64], &mask, 3).unwrap();
+        let picture = |seeds: &SeedPermutation| -> Vec<f64> {
+            let at = |i: usize| Site { frame: 0, y: i / 64, x: i % 64 };
+            (0..4096).map(|i| f64::from(seeds.sample(at(i), 0, 0))).collect()
+        };
+        let like = |seeds: &SeedPermutation, frame: usize| {
+            let level = |i: usize| f64::from(seeds.level(i / 64, i % 64, frame));
+            let pairs: Vec<(f64, f64)> =
+                picture(seeds).into_iter().enumerate().map(|(i, value)| (value, level(i))).collect();
+            correlation(&pairs)
+        };
+        // Values without connection correlate by 0 ± 1/64; the mask with itself elsewhere by up to a few times that.
+        assert!(like(&seeds, 0).abs() < 5.0 / 64.0);
+        seeds.advance(&picture(&seeds)).unwrap();
+        let (last, next) = (like(&seeds, 0), like(&seeds, 1));
+        assert!(next > 0.6 && last.abs() < 0.2, "{last} {next}");
+    }
+
+    #[test]
+    fn displacements_do_not_repeat_before_the_tile_is_through() {
+        let mask =
+            SampleTable::white_noise(Extent { frames: 1, height: 16, width: 64, spp: 1 }, 1, 0).unwrap();
+        let seeds = SeedPermutation::new([16, 64], &mask, 0).unwrap();
+        let places: std::collections::BTreeSet<_> = (0..64).map(|frame| seeds.displacement(frame)).collect();
+        assert_eq!(places.len(), 64);
     }
 }

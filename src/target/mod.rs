@@ -25,6 +25,7 @@ pub use density::Density;
 pub use picture::{Inks, Tone};
 pub(crate) use pieces::Pieces;
 pub use projected::Projected;
+pub(crate) use warp::kronecker_steps;
 
 /// The measure that a class's samples should resemble.
 ///

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use image::{DynamicImage, ImageReader};
+use image::{DynamicImage, ImageFormat, ImageReader, Rgba};
 
 use super::density::Density;
 use crate::error::{ConfigError, PictureError};
@@ -27,7 +27,7 @@ pub struct Inks {
 }
 
 impl Density {
-    /// The density of a picture's luminance (Rec. 709 weights) in linear light. Integers are taken for sRGB; floating point
+    /// The density of a picture's luminance (Rec. 709 weights) in linear light, with straight alpha. Integers are taken for sRGB; floating point
     /// numbers, as of an EXR, for linear.
     ///
     /// [`Tone::Dark`] counts what is missing to white, [`Tone::Bright`] the light; both times alpha, so that nothing lies where
@@ -68,10 +68,11 @@ impl Inks {
     /// A picture without any ink, with values that are not finite, or with sides beyond 65535.
     pub fn from_picture(picture: &DynamicImage) -> Result<Self, ConfigError> {
         let size = [picture.width() as usize, picture.height() as usize];
+        Density::check_size(size)?;
         let mut coverage = [(); 4].map(|()| Vec::with_capacity(size[0] * size[1]));
         for (index, [red, green, blue, alpha]) in linear(picture).enumerate() {
             let [x, y] = [index % size[0], index / size[0]];
-            let bad = [red, green, blue].into_iter().find(|value| !value.is_finite());
+            let bad = [red, green, blue, alpha].into_iter().find(|value| !value.is_finite());
             if let Some(value) = bad {
                 return Err(ConfigError::BadDensity { x, y, value: value.into() });
             }
@@ -130,7 +131,17 @@ impl Inks {
 fn read(path: &Path) -> Result<DynamicImage, PictureError> {
     let refused = |source| PictureError::Read { path: PathBuf::from(path), source };
     let reader = ImageReader::open(path).and_then(ImageReader::with_guessed_format);
-    reader.map_err(|error| refused(error.into()))?.decode().map_err(refused)
+    let reader = reader.map_err(|error| refused(error.into()))?;
+    let is_exr = reader.format() == Some(ImageFormat::OpenExr);
+    let mut picture = reader.decode().map_err(refused)?;
+    if let (true, DynamicImage::ImageRgba32F(pixels)) = (is_exr, &mut picture) {
+        // An EXR file holds colours that are multiplied by alpha already.
+        for Rgba([red, green, blue, alpha]) in pixels.pixels_mut() {
+            let share = if *alpha > 0.0 { alpha.recip() } else { 0.0 };
+            [red, green, blue].into_iter().for_each(|light| *light *= share);
+        }
+    }
+    Ok(picture)
 }
 
 /// Red, green, blue and alpha in linear light.

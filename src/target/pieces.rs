@@ -49,8 +49,16 @@ impl Pieces {
         Self { knots, mean: integral, variance: (square - integral * integral).max(0.0) }
     }
 
+    /// What stands for anything that is no law: it is refused when it is used.
+    fn unsound() -> Self {
+        Self { knots: Vec::new(), mean: f64::NAN, variance: f64::NAN }
+    }
+
     /// Equally likely values.
     pub(super) fn of_samples(mut values: Vec<f64>) -> Self {
+        if values.is_empty() {
+            return Self::unsound();
+        }
         values.sort_unstable_by(f64::total_cmp);
         let count = values.len();
         if count <= MOST_ATOMS {
@@ -97,6 +105,11 @@ impl Pieces {
 
     /// A piecewise linear density.
     pub(super) fn of_density(places: &[f64], densities: &[f64]) -> Self {
+        let is_density = densities.iter().all(|&density| density >= 0.0 && density.is_finite());
+        let mass = densities.iter().sum::<f64>();
+        if places.len() != densities.len() || !places.is_sorted() || !is_density || mass == 0.0 {
+            return Self::unsound();
+        }
         let pairs = || places.windows(2).zip(densities.windows(2));
         let masses: Vec<f64> = pairs().map(|(x, f)| (x[1] - x[0]) * 0.5 * (f[0] + f[1])).collect();
         let means = pairs().map(|(_, f)| {
@@ -168,7 +181,8 @@ impl Pieces {
             return 0.5 * (low + high);
         }
         let mean = (self.quantile_integral(upper) - self.quantile_integral(lower)) / (upper - lower);
-        mean.clamp(low, high)
+        // No `clamp`: it panics where the law is no law.
+        mean.max(low).min(high)
     }
 
     pub(crate) fn cell_means_into(&self, means: &mut [f64]) {

@@ -59,7 +59,7 @@ impl Projected {
     }
 
     /// The law of equally likely values, in any order. Beyond 2048 of them, runs of neighbours become pieces with their mass
-    /// and mean.
+    /// and, as far as a linear density can have it, mean. Without values it is no law, and refused when it is used.
     pub fn from_samples(values: Vec<f64>) -> Self {
         Self::of_pieces(Pieces::of_samples(values))
     }
@@ -69,7 +69,8 @@ impl Projected {
         Self::of_pieces(Pieces::of_quantile(quantile))
     }
 
-    /// The law whose density is linear between increasing `places` and in proportion to `densities` there, 0 outside.
+    /// The law whose density is linear between increasing `places` and in proportion to `densities` there, 0 outside. Lists of
+    /// different lengths, places that fall, densities below 0 or all 0 are no law, and refused when they are used.
     pub fn from_density(places: &[f64], densities: &[f64]) -> Self {
         Self::of_pieces(Pieces::of_density(places, densities))
     }

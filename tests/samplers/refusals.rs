@@ -1,6 +1,6 @@
 //! Mistakes are refused with the values that show them, before any work.
 
-use fsot::sampler::{Cooling, DitherMask, Fast, ScramblingKeys, SeedPermutation, Stbn};
+use fsot::sampler::{Cooling, DitherMask, Fast, ScramblingKeys, SeedPermutation, Stbn, histogram_sampling};
 use fsot::{ConfigError, Extent, SampleTable};
 
 use crate::common::tile;
@@ -52,4 +52,14 @@ fn a_picture_that_no_mask_tiles_is_refused() {
         "{error}"
     );
     assert!(matches!(SeedPermutation::new([0, 8], &mask, 0), Err(ConfigError::EmptyAxis { axis: "height" })));
+}
+
+#[test]
+fn pictures_of_another_size_are_named() {
+    let says = |error: ConfigError, text: &str| assert!(error.to_string().contains(text), "{error}");
+    says(histogram_sampling(&[], &[0.5]).unwrap_err(), "the number of estimates is 0");
+    says(histogram_sampling(&[&[1.0, 2.0]], &[0.5]).unwrap_err(), "the number of pixels of an estimate is 2");
+    let mask = SampleTable::white_noise(tile(1, 4, 1), 1, 0).unwrap();
+    let mut seeds = SeedPermutation::new([8, 8], &mask, 0).unwrap();
+    says(seeds.advance(&[0.0; 63]).unwrap_err(), "the number of values is 63");
 }

@@ -1,6 +1,9 @@
 //! Labelled classes and ramps.
 
-use fsot::{Classes, Config, Demand, Extent, Optimizer, Ramp, Role, Subsets, Target, Term, metrics};
+use fsot::{
+    Classes, Config, ConfigError, Demand, Extent, Lengths, Optimizer, PrefixLength, PrefixOf, Ramp, Role,
+    Subsets, Target, Term, Until, metrics,
+};
 
 use crate::optimised;
 
@@ -41,7 +44,9 @@ fn degenerate_labels_are_classes_too() {
     // An empty class beside others, a single point, and equal labels throughout.
     for counts in [vec![0, 40], vec![1], vec![1, 1, 1], vec![40]] {
         let points = optimised(Config::classes(&counts, 2, &Subsets::EachAndAll), 1000);
-        assert_eq!(points.len(), 2 * counts.iter().sum::<usize>());
+        let count = counts.iter().sum();
+        assert_eq!(points.len(), 2 * count);
+        assert!(distance(&points) < 1.5 * alone(count), "{counts:?}: {}", distance(&points));
         if counts == [1] {
             assert!(points.iter().all(|value| (value - 0.5).abs() < 0.02), "{points:?}");
         }
@@ -75,6 +80,61 @@ fn the_ends_of_a_ramp_are_uniform() {
     let best = alone(200);
     for half in points.chunks_exact(400) {
         assert!(distance(half) < 2.0 * best, "{} {best}", distance(half));
+    }
+}
+
+/// Terms whose classes hold nothing of what is demanded are left out, and do not stand in the way of the others.
+#[test]
+fn terms_that_nobody_demands_are_left_out() {
+    let term = |classes| Term {
+        classes,
+        target: Target::UniformCube,
+        dims: vec![0, 1],
+        weight: 1.0,
+        role: Role::Descend,
+    };
+    let labels: Vec<u32> = (0..80).map(|point| u32::from(point >= 30)).collect();
+    let only = |label: u32| term(Classes::labelled(labels.clone(), [vec![label]]));
+    let short = PrefixLength { length: 24, weight: 1.0 };
+    let prefix = term(Classes::Prefixes { of: PrefixOf::Table, lengths: Lengths::Given(vec![short]) });
+    let demand = |first: usize| {
+        let flags = (0..80).map(|point| point >= first).collect();
+        Demand::new([1, 1, 80], flags, vec![vec![0, 1]]).unwrap()
+    };
+    for batch_slices in [None, Some(64)] {
+        for terms in [vec![only(0), only(1)], vec![prefix.clone(), term(Classes::WholeTable)]] {
+            let mut config = Config::point_set(80, 2, terms);
+            config.slicing.batch_slices = batch_slices;
+            let mut optimizer = Optimizer::for_demand(config, &demand(30)).unwrap();
+            assert_eq!(optimizer.objective().terms().count(), 1);
+            let before = optimizer.table();
+            optimizer.step(1.0, 1.0);
+            let after = optimizer.table();
+            assert_eq!(before.values()[..60], after.values()[..60]);
+            assert!((60..160).all(|i| before.values()[i] != after.values()[i]));
+        }
+    }
+    let refused = Optimizer::for_demand(Config::point_set(80, 2, vec![prefix]), &demand(30));
+    assert_eq!(refused.err(), Some(ConfigError::NoDemand));
+}
+
+#[test]
+fn more_labels_than_have_sets_are_classes_still() {
+    let config = Config::classes(&[4; 70], 2, &Subsets::Every);
+    let Classes::Labelled { subsets, .. } = &config.terms[0].classes else { panic!() };
+    assert_eq!((subsets.len(), subsets[70].labels.len()), (71, 70));
+}
+
+/// A number of slices is meant per class, however many a step draws.
+#[test]
+fn slices_are_counted_per_class() {
+    let mut config = Config::classes(&[40, 60], 2, &Subsets::EachAndAll);
+    for batch_slices in [None, Some(96)] {
+        config.slicing.batch_slices = batch_slices;
+        let mut optimizer = Optimizer::new(config.clone()).unwrap();
+        let report =
+            optimizer.run(Until::SlicesPerClass(320), |_| std::ops::ControlFlow::Continue(())).unwrap();
+        assert!(report.slices.abs_diff(3 * 320) <= 96, "{batch_slices:?}: {}", report.slices);
     }
 }
 

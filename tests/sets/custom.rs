@@ -90,6 +90,40 @@ fn faults_are_named() {
     assert!(matches!(refused(empty, Target::UniformCube), ConfigError::NoClasses { .. }));
 }
 
+/// What is no law is refused by whoever uses it.
+#[test]
+fn laws_that_are_none_are_refused() {
+    #[derive(Debug)]
+    struct Given(fn() -> Projected);
+    impl Measure for Given {
+        fn name(&self) -> &str {
+            "given"
+        }
+        fn dims(&self) -> usize {
+            2
+        }
+        fn project(&self, _: &[f64]) -> Projected {
+            (self.0)()
+        }
+    }
+    let laws: [fn() -> Projected; 7] = [
+        || Projected::from_quantile(|_| f64::NAN),
+        || Projected::from_samples(Vec::new()),
+        || Projected::from_density(&[0.0, 1.0], &[0.0, 0.0]),
+        || Projected::from_density(&[0.0, 1.0], &[-1.0, 3.0]),
+        || Projected::from_density(&[1.0, 0.0], &[1.0, 1.0]),
+        || Projected::from_density(&[0.0, 0.5, 1.0], &[1.0, 1.0]),
+        || Projected::from_density(&[], &[]),
+    ];
+    for (index, law) in laws.into_iter().enumerate() {
+        let target = Target::custom(Given(law));
+        let error = metrics::sliced_w2(&[0.3, 0.6, 0.1, 0.9], 2, &target, 8).unwrap_err();
+        assert!(matches!(error, ConfigError::BadLaw { .. }), "{index}: {error}");
+        let error = Optimizer::new(Config::point_set(9, 2, vec![term(comb(None), target)])).err();
+        assert!(matches!(error, Some(ConfigError::BadLaw { .. })), "{index}: {error:?}");
+    }
+}
+
 #[test]
 fn code_is_written_by_name_and_not_read_back() {
     let write = |term| serde_json::to_string(&Config::point_set(9, 2, vec![term])).unwrap();

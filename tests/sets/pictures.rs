@@ -37,6 +37,17 @@ fn sixteen_bits_alpha_and_floats_are_read() {
     light.save(folder.path().join("light.exr")).unwrap();
     let light = Density::open(folder.path().join("light.exr"), Tone::Bright).unwrap();
     assert!(light.values()[0] == 0.0 && (light.values()[1] - 4.0).abs() < 1e-6);
+
+    // Colours in an EXR file are multiplied by alpha: half of a light of 0.8, and half of nothing.
+    let veiled =
+        ImageBuffer::<Rgba<f32>, _>::from_fn(2, 1, |x, _| Rgba([0.4, 0.4, 0.4, 0.5].map(|v| v * x as f32)));
+    veiled.save(folder.path().join("veiled.exr")).unwrap();
+    let open = |tone| Density::open(folder.path().join("veiled.exr"), tone).unwrap().values().to_vec();
+    let near = |values: Vec<f32>, expected: f32| {
+        assert!(values[0] == 0.0 && (values[1] - expected).abs() < 1e-6, "{values:?} {expected}");
+    };
+    near(open(Tone::Bright), 0.5 * 0.8);
+    near(open(Tone::Dark), 0.5 * 0.2);
 }
 
 #[test]
@@ -49,7 +60,19 @@ fn pictures_without_ink_are_refused() {
     assert_eq!(Density::from_picture(&clear, Tone::Dark), Err(none.clone()));
     assert_eq!(Inks::from_picture(&white.into()), Err(none.clone()));
     assert_eq!(Inks::from_picture(&clear), Err(none));
+    let blind: DynamicImage = ImageBuffer::from_pixel(1, 2, Rgba([0.5_f32, 0.5, 0.5, f32::NAN])).into();
+    assert!(matches!(Inks::from_picture(&blind), Err(ConfigError::BadDensity { x: 0, y: 0, .. })));
+    assert!(matches!(Density::from_picture(&blind, Tone::Dark), Err(ConfigError::BadDensity { .. })));
+    let long: DynamicImage = GrayImage::new(65536, 1).into();
+    assert!(matches!(Inks::from_picture(&long), Err(ConfigError::OutOfRange { .. })));
     let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("white.png");
+    GrayImage::from_pixel(3, 2, Luma([255])).save(&path).unwrap();
+    let error = Density::open(&path, Tone::Dark).unwrap_err();
+    assert!(
+        matches!(&error, PictureError::Density { problem: ConfigError::NoDensity { .. }, .. }),
+        "{error}"
+    );
     let path = folder.path().join("note.png");
     std::fs::write(&path, "no picture").unwrap();
     for path in [path, folder.path().join("missing.png")] {
