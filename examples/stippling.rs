@@ -25,7 +25,7 @@ struct Arguments {
     #[arg(long)]
     bright: bool,
     /// Slices.
-    #[arg(long, default_value_t = 2000)]
+    #[arg(long, default_value_t = 16000)]
     slices: u64,
     /// Names every random number: the same seed gives the same bits.
     #[arg(long, default_value_t = 0)]

@@ -48,6 +48,8 @@ fn other_shapes() {
     reaches([1, 24, 24, 4], 2, sweeps(30), [0.14, 0.58, 0.6]);
     reaches([1, 48, 48, 1], 1, sweeps(40), [0.25, 0.66, 0.6]);
     reaches([1, 40, 40, 1], 4, sweeps(30), [0.27, 0.70, 0.9]);
+    // Thousands of neighbours move together; without a limit on the step this ends at 1.9 and 1.4.
+    reaches([1, 16, 16, 16], 4, Work { slices_per_class: 40, sweeps: 6 }, [0.12, 0.56, 0.4]);
     reaches([3, 20, 40, 1], 3, sweeps(20), [0.40, 0.74, 1.0]);
 }
 
