@@ -27,10 +27,13 @@ pub(crate) enum Purpose {
     /// Parameters of one test integrand.
     Integrands = 32,
     /// The swaps of one region in one round of an annealing.
+    #[cfg(feature = "render")]
     Swaps = 48,
     /// Where the regions of a round lie.
+    #[cfg(feature = "render")]
     Regions,
     /// The arrangement that an annealing starts from, and other starts of the compared samplers.
+    #[cfg(feature = "render")]
     Start,
 }
 

@@ -24,11 +24,11 @@ pub fn draw(setting: &Setting, spp: u32, shown: &[(Contender, Film, f64)]) -> Re
     let page = MARGIN + columns * step_x;
     let mut out = Canvas::new(page, 4 * LINE + MARGIN + shown.len().div_ceil(COLUMNS) * step_y);
     let last = setting.scene.frames - 1;
-    let frames = if last > 0 { ", last frame" } else { "" };
-    let title = format!("{}{frames}, {spp} spp; ratio of the error to white noise", setting.scene.name);
+    let after = if last > 0 { ", after the eye's filter in space and time" } else { "" };
+    let title = format!("{}, {spp} spp; ratio of the error to white noise{after}", setting.scene.name);
     out.write([MARGIN, MARGIN], &title, page - MARGIN);
     let legend = [
-        "rows: rendered; its error after the filter, grey = none;",
+        "rows: rendered (the last frame); its error after the filter in space, grey = none;",
         "spectrum of the error, middle = low frequency",
     ];
     for (line, text) in legend.into_iter().enumerate() {
