@@ -92,9 +92,9 @@
 //!   platforms sines, cosines and powers of the standard library may round differently in the last bit, and a run
 //!   amplifies that; tables then differ, their quality doesn't.
 //! * Values lie in `[0, 1)`; 1.0 never appears.
-//! * Steps allocate nothing once their buffers have grown; memory stays below nine times the table (eleven with Adam), plus a few
-//!   MiB per thread. (Sweeps of tiles narrower than 16 pixels take up to 16 times the table instead: their rows are filled
-//!   up.) A target other than the cube is tabulated once, in up to 17 MiB.
+//! * Steps allocate nothing once their buffers have grown; memory stays below nine times the table (ten with SGD, eleven
+//!   with Adam), plus a few MiB per thread. (Sweeps of tiles narrower than 16 pixels take up to 16 times the table instead:
+//!   their rows are filled up.) A target other than the cube is tabulated once, in up to 17 MiB.
 //! * Bad input is refused with a typed error ([`ConfigError`], [`TableError`]) before anything is computed or written.
 //!   The library prints nothing.
 //!
