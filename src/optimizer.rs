@@ -227,8 +227,8 @@ impl Optimizer {
         }
     }
 
-    /// Sweeps once over all samples: each moves `rate` times along the gradient of the objective over all slices at once
-    /// ([`Objective::cramer`]). Half-way and at its end one slice of every class in the role of [`Role::Balance`] moves them
+    /// Sweeps once over all samples: each moves `rate` times (at most as far as settles, see [`Sweeps`]) along the gradient of
+    /// the objective over all slices at once ([`Objective::cramer`]). Half-way and at its end one slice of every class in the role of [`Role::Balance`] moves them
     /// `balance` of the way.
     /// Returns the root mean square pull on a coordinate.
     ///

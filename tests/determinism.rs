@@ -46,7 +46,14 @@ fn cases() -> Vec<Config> {
 /// its sort is lent to another subset. Balanced subsets that are too many to wait, and one that is too large.
 #[test]
 fn threads_do_not_change_a_bit_of_large_subsets() {
+    // More whole tables in a step than wait with the rest of it.
+    let mut many = config([1, 64, 64, 16], 2, Descent::barycentric(), 2);
+    let balances = many.terms.iter_mut().filter(|term| term.role == Role::Balance);
+    balances.for_each(|term| term.weight *= 100.0);
+    let drawn = optimizer(&many).objective().draw(many.seed, 0, Role::Balance).len();
+    assert!(drawn > (1 << 20) / (64 * 64 * 16), "{drawn}");
     let configs = [
+        many,
         Config::classes(&[20_000; 10], 2, &Subsets::EachAndAll),
         Config::progressive(200_000, 2, Lengths::PowersOfTwo),
         config([40, 60, 60, 1], 2, Descent::barycentric(), 1),
@@ -249,22 +256,27 @@ fn steps_of_size_zero_leave_the_table() {
 /// Value stability. When these move, every table does: a "Value-breaking change" that belongs in the CHANGELOG.
 ///
 /// Compared to 1e-4 only, because the sine and cosine of the directions may differ in the last bit between platforms.
-/// Few and small steps, so that such a bit does not grow by the swap of two nearly tied samples.
+/// Few and small steps, so that such a bit does not grow by the swap of two nearly tied samples. Descent, balance, sweeps.
 #[test]
 fn values_are_pinned() {
-    let values = |extent, dims, descent| {
+    let after = |extent, dims, descent, work: &dyn Fn(&mut Optimizer)| {
         let mut optimizer = optimizer(&config(extent, dims, descent, 1));
-        for _ in 0..4 {
-            optimizer.step(0.05, 0.05);
-        }
+        work(&mut optimizer);
         let table = optimizer.into_table();
         let sum: f64 = table.values().iter().map(|&value| f64::from(value)).sum();
         (table.values()[..4].to_vec(), sum / table.values().len() as f64)
     };
+    let steps = |optimizer: &mut Optimizer| (0..4).for_each(|_| _ = optimizer.step(0.05, 0.05));
+    let balanced = |optimizer: &mut Optimizer| (0..16).for_each(|_| _ = optimizer.step(0.01, 1.0));
+    let swept = |optimizer: &mut Optimizer| (0..2).for_each(|_| _ = optimizer.sweep(0.1, 0.5).unwrap());
+    let barycentric = Descent::barycentric();
     for ((first, mean), (expected, expected_mean)) in [
-        (values([1, 8, 8, 1], 2, Descent::barycentric()), ([0.04938, 0.67882, 0.59757, 0.86115], 0.485519)),
-        (values([3, 5, 7, 1], 2, Descent::barycentric()), ([0.04836, 0.66538, 0.59683, 0.85802], 0.497646)),
-        (values([1, 6, 6, 2], 4, Descent::adam()), ([0.02789, 0.55331, 0.73998, 0.72187], 0.495271)),
+        (after([1, 8, 8, 1], 2, barycentric, &steps), ([0.04938, 0.67882, 0.59757, 0.86115], 0.485519)),
+        (after([3, 5, 7, 1], 2, barycentric, &steps), ([0.04836, 0.66538, 0.59683, 0.85802], 0.497646)),
+        (after([1, 6, 6, 2], 4, Descent::adam(), &steps), ([0.02789, 0.55331, 0.73998, 0.72187], 0.495271)),
+        (after([3, 5, 7, 1], 2, barycentric, &balanced), ([0.07953, 0.62082, 0.62345, 0.85906], 0.499148)),
+        (after([3, 5, 7, 1], 2, barycentric, &swept), ([0.08296, 0.60995, 0.61438, 0.87186], 0.499713)),
+        (after([1, 6, 6, 2], 3, barycentric, &swept), ([0.07682, 0.67480, 0.64228, 0.86187], 0.499008)),
     ] {
         let close = |a: f64, b: f64| (a - b).abs() < 1e-4;
         let same = first.iter().zip(&expected).all(|(&a, &b)| close(a.into(), b));

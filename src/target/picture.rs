@@ -62,7 +62,8 @@ impl Density {
 }
 
 impl Inks {
-    /// The inks of a picture on white paper: black replaces what the colours have in common. Transparency shows the paper.
+    /// The inks of a picture on white paper: black replaces what the colours have in common. Transparency shows the paper;
+    /// alpha is straight.
     ///
     /// # Errors
     /// A picture without any ink, with values that are not finite, or with sides beyond 65535.
