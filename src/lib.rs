@@ -106,66 +106,49 @@
 //! [^korac]: Korać, Salaün, Georgiev, Grittmann, Slusallek, Myszkowski, Singh 2023, "Perceptual error optimization for Monte
 //!     Carlo animation rendering", SIGGRAPH Asia, <https://doi.org/10.1145/3610548.3618146>.
 
-mod atlas;
-mod atomic;
-mod bank;
-mod class;
-mod cramer;
-mod demand;
-mod descent;
-mod direction;
-mod domain;
-mod draw;
-mod engine;
+mod classes;
+mod config;
+mod directions;
 mod error;
+mod files;
 mod kernel;
-mod lanes;
-mod lattice;
-mod law;
-mod long;
-mod mapping;
-mod metadata;
+mod laws;
 pub mod metrics;
-mod network;
-mod npy;
 mod objective;
 mod optimizer;
-mod part;
-mod plan;
-mod point_set;
-mod pull;
+mod random;
 #[cfg(feature = "render")]
 pub mod render;
-mod row;
-mod run;
 #[cfg(feature = "render")]
 pub mod sampler;
-mod stream;
+mod simd;
+mod slices;
+mod sweeps;
 mod table;
-mod target;
-mod term;
+mod targets;
 mod transport;
 
-pub use class::{
+pub use classes::demand::Demand;
+pub use classes::{
     ClassFamily, Classes, CustomClasses, Form, LabelSet, Lengths, Member, PrefixLength, PrefixOf, Ramp,
 };
-pub use cramer::Sweeps;
-pub use demand::Demand;
-pub use descent::{Descent, Schedule, Shape};
-pub use domain::{BELOW_ONE, Domain};
+pub use config::point_sets::Subsets;
+pub use config::term::{DimensionGroup, Role, Slicing, Term};
 #[cfg(feature = "render")]
 pub use error::PictureError;
 pub use error::{ConfigError, FormatError, TableError};
+pub use files::metadata::{BoundEstimate, BoundRecord, KernelTaps, Metadata, RunRecord};
 pub use kernel::{Kernel, SpatialKernel, SpatialTap, Tap, TemporalKernel};
-pub use lattice::{Extent, Site};
-pub use mapping::Mapping;
-pub use metadata::{BoundEstimate, BoundRecord, KernelTaps, Metadata, RunRecord};
+pub use laws::Projected;
 pub use objective::{Objective, Slice};
+pub use optimizer::report::{Ended, RunReport, StepReport, Until, Work};
 pub use optimizer::{Config, Optimizer};
-pub use point_set::Subsets;
-pub use run::{Ended, RunReport, StepReport, Until, Work};
+pub use slices::walk::{Descent, Schedule, Shape};
+pub use sweeps::Sweeps;
 pub use table::SampleTable;
-pub use target::{CustomTarget, Density, Measure, PointCloud, Projected, Target};
+pub use table::domain::{BELOW_ONE, Domain};
+pub use table::extent::{Extent, Site};
+pub use table::vectors::Mapping;
+pub use targets::{CustomTarget, Density, Measure, PointCloud, Target};
 #[cfg(feature = "render")]
-pub use target::{Inks, Tone};
-pub use term::{DimensionGroup, Role, Slicing, Term};
+pub use targets::{Inks, Tone};

@@ -58,8 +58,8 @@ impl Bias {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lattice::Extent;
     use crate::metrics::{Estimate, Family, Integrand, integrands::Shape};
+    use crate::table::extent::Extent;
     use approx::assert_relative_eq;
 
     const EXTENT: Extent = Extent { frames: 3, height: 6, width: 8, spp: 2 };

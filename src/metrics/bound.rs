@@ -6,12 +6,12 @@ use rand_distr::StandardNormal;
 use rayon::prelude::*;
 
 use crate::error::ConfigError;
-use crate::metadata::BoundEstimate;
+use crate::files::metadata::BoundEstimate;
+use crate::laws::distance::Workspace;
 use crate::objective::{Objective, Slice};
-use crate::stream::{self, Purpose};
+use crate::random::{self, Purpose};
 use crate::table::SampleTable;
-use crate::target::Target;
-use crate::transport::Workspace;
+use crate::targets::Target;
 
 /// The bound on a table's filtered error, measured on random slices.
 #[derive(Clone, Debug, PartialEq)]
@@ -131,7 +131,7 @@ fn distances(
     let planned = &objective.terms[term];
     let dims = planned.spec.dims.len();
     let index = (term as u64) << 32 | cluster as u64;
-    let mut generator = stream::generator(seed, Purpose::Bound, 0, index);
+    let mut generator = random::generator(seed, Purpose::Bound, 0, index);
     let direction = if dims == 2 {
         // Angles are stratified over the clusters.
         let angle = std::f64::consts::PI * (cluster as f64 + generator.random::<f64>()) / clusters as f64;

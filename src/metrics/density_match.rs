@@ -1,7 +1,7 @@
 //! Whether points are where a density is, to the eye.
 
 use crate::error::ConfigError;
-use crate::target::Density;
+use crate::targets::Density;
 
 /// How points follow a density after both are blurred.
 #[derive(Clone, Copy, Debug, PartialEq)]

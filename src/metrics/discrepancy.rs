@@ -64,9 +64,9 @@ fn squared(points: &[f64], dims: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lattice::Extent;
     use crate::metrics::Estimate;
-    use crate::stream;
+    use crate::random;
+    use crate::table::extent::Extent;
 
     /// The integral itself: the integrand is a polynomial of degree 2 per axis between the points' coordinates,
     /// which a two-point Gauss rule on every cell of their grid integrates exactly.
@@ -104,7 +104,7 @@ mod tests {
         for dims in 1..=3 {
             for count in [1, 2, 7] {
                 let points: Vec<f64> =
-                    stream::uniforms(dims as u64, count * dims).into_iter().map(f64::from).collect();
+                    random::uniforms(dims as u64, count * dims).into_iter().map(f64::from).collect();
                 let (fast, slow) = (squared(&points, dims), by_integration(&points, dims));
                 assert!((fast - slow).abs() < 1e-14, "D = {dims}, n = {count}: {fast} {slow}");
             }

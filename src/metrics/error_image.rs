@@ -4,8 +4,8 @@ use ndarray::Array3;
 
 use super::integrands::Integrand;
 use crate::error::ConfigError;
-use crate::lattice::Extent;
 use crate::table::SampleTable;
+use crate::table::extent::Extent;
 
 /// Error `e[t, y, x] = (1/spp) Σ_s f(x_s) − ∫f` of every pixel of every frame.
 ///

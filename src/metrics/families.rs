@@ -6,7 +6,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::integrands::{Integrand, Shape};
 use crate::error::ConfigError;
-use crate::stream::{Purpose, generator};
+use crate::random::{Purpose, generator};
 
 /// Kinds of integrands, from what renderers integrate: edges, shading, highlights and lights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

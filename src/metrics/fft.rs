@@ -89,7 +89,7 @@ fn transpose(from: &[Complex64], to: &mut [Complex64], columns: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stream;
+    use crate::random;
 
     #[test]
     fn agrees_with_the_sum_of_its_definition() {
@@ -97,7 +97,7 @@ mod tests {
         let [frames, height, width] = shape;
         let transform = Transform::new(frames, height, width);
         let mut scratch = transform.scratch();
-        let noise = stream::uniforms(3, 2 * transform.len());
+        let noise = random::uniforms(3, 2 * transform.len());
         let input: Vec<_> = noise.chunks_exact(2).map(|v| Complex64::new(v[0].into(), v[1].into())).collect();
         scratch.data.copy_from_slice(&input);
         transform.forward(&mut scratch);

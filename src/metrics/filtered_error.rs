@@ -8,8 +8,8 @@ use super::fft::Transform;
 use super::ratios::Ratios;
 use crate::error::ConfigError;
 use crate::kernel::{Kernel, TemporalKernel};
-use crate::lattice::Extent;
 use crate::table::SampleTable;
+use crate::table::extent::Extent;
 
 /// Mean squared error of a table before and after filtering, each as ratio to white noise of the same shape.
 ///

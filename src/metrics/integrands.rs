@@ -132,7 +132,7 @@ fn distance_sq(point: &[f64], axes: &[usize], centre: &[f64]) -> f64 {
 mod tests {
     use super::*;
     use crate::metrics::{Family, Integrands};
-    use crate::stream;
+    use crate::random;
 
     /// 50 integrands of every family against 2^15 random points: the estimate of the mean is within 5 standard
     /// errors, that of the variance within 5 of its own (from the sample's fourth moment). Under the normal law
@@ -141,7 +141,7 @@ mod tests {
     fn closed_forms_agree_with_monte_carlo() {
         const POINTS: usize = 1 << 15;
         for dims in [1, 2, 3, 5] {
-            let points: Vec<f64> = stream::uniforms(9, POINTS * dims).into_iter().map(f64::from).collect();
+            let points: Vec<f64> = random::uniforms(9, POINTS * dims).into_iter().map(f64::from).collect();
             let set = Integrands::random(dims, 50, 4).unwrap();
             for integrand in Family::ALL.iter().flat_map(|&family| set.family(family)) {
                 let mean_of = |f: &dyn Fn(f64) -> f64| {

@@ -43,14 +43,14 @@ pub fn set_error(points: &[f64], integrands: &Integrands) -> Result<Ratios, Conf
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stream;
+    use crate::random;
 
     /// Mean over 256 sets of 64 points, each over 4 × 16 integrands: the standard error is below 0.05.
     #[test]
     fn independent_points_have_ratio_1() {
         let integrands = Integrands::random(2, 16, 3).unwrap();
         let of = |seed| {
-            let points: Vec<f64> = stream::uniforms(seed, 128).into_iter().map(f64::from).collect();
+            let points: Vec<f64> = random::uniforms(seed, 128).into_iter().map(f64::from).collect();
             set_error(&points, &integrands).unwrap().mean.mean
         };
         let mean = (0..256).map(of).sum::<f64>() / 256.0;

@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 
 use crate::error::ConfigError;
-use crate::target::Target;
-use crate::transport::Workspace;
+use crate::laws::distance::Workspace;
+use crate::targets::Target;
 
 /// The sliced 2-Wasserstein distance between equally weighted points and a target: the root of the mean, over
 /// `directions` directions, of the squared 2-Wasserstein distance of the projections.
@@ -40,7 +40,7 @@ pub fn sliced_w2(
         return Err(ConfigError::BadPoint { index, value: points[index] });
     }
     let squared = (0..directions).into_par_iter().map(|index| {
-        let direction = crate::direction::spread(dims, index, directions);
+        let direction = crate::directions::spread(dims, index, directions);
         let direction: Vec<f64> =
             direction.iter().zip(target.scales(dims)).map(|(component, scale)| component * scale).collect();
         let along = |point: &[f64]| point.iter().zip(&direction).map(|(x, theta)| x * theta).sum();

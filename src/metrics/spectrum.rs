@@ -208,8 +208,8 @@ fn accumulate(plane: &Transform, scratch: &mut Scratch, power: &mut [f64]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lattice::Extent;
     use crate::metrics::{Estimate, Family, error_image};
+    use crate::table::extent::Extent;
     use approx::{assert_abs_diff_eq, assert_relative_eq};
     use ndarray::Array3;
 

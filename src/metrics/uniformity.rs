@@ -69,9 +69,9 @@ impl Histogram {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::domain::BELOW_ONE;
-    use crate::lattice::Extent;
     use crate::metrics::Estimate;
+    use crate::table::domain::BELOW_ONE;
+    use crate::table::extent::Extent;
 
     #[test]
     fn counts_stand_where_documented() {

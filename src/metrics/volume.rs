@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::target::Target;
+use crate::targets::Target;
 
 /// Volume of `{x in [0, 1]^D : normal · x < offset}`, the CDF of a sum of independent uniforms.
 pub(super) fn half_space(normal: &[f64], offset: f64) -> f64 {

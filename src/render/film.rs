@@ -6,7 +6,7 @@ use std::path::Path;
 use image::{GrayImage, ImageFormat, Luma, Rgb, Rgb32FImage};
 
 use super::error::{RenderError, not_empty};
-use crate::atomic::Pending;
+use crate::files::whole::Pending;
 
 /// Linear luminance `[frame][y][x]` in C order.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,9 +1,9 @@
 use approx::assert_relative_eq;
 
 use super::*;
-use crate::lattice::Extent;
 use crate::render::{Scene, render};
 use crate::sampler::WhiteNoise;
+use crate::table::extent::Extent;
 
 fn constant(shape: [usize; 3], value: f64) -> Film {
     Film::new(shape, vec![value; shape.iter().product()]).unwrap()

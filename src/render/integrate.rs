@@ -13,8 +13,8 @@ use super::error::RenderError;
 use super::film::Film;
 use super::scene::{Hit, Integrator, Scene};
 use super::shape::Ray;
-use crate::lattice::Site;
 use crate::sampler::Sampler;
+use crate::table::extent::Site;
 
 /// What is known of a pixel before any number is drawn.
 #[derive(Clone, Copy, Debug)]

@@ -5,9 +5,9 @@ use std::f64::consts::PI;
 use nalgebra::Vector3;
 
 use super::*;
-use crate::lattice::{Extent, Site};
 use crate::sampler::{OwenSobol, Sampler, TableSampler, WhiteNoise};
 use crate::table::SampleTable;
+use crate::table::extent::{Extent, Site};
 
 /// One checker, every sampler.
 fn every_sampler(check: impl Fn(&str, &dyn Sampler)) {

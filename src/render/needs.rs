@@ -3,9 +3,9 @@
 use super::error::RenderError;
 use super::integrate::{Pixel, for_each_pixel};
 use super::scene::Scene;
-use crate::demand::Demand;
-use crate::lattice::{Extent, Site};
+use crate::classes::demand::Demand;
 use crate::sampler::{OwenSobol, Sampler};
+use crate::table::extent::{Extent, Site};
 
 /// Samples that must agree to the last bit before a pixel behind a lens counts as constant.
 const PROBES: u32 = 256;

@@ -8,7 +8,7 @@ use super::error::{RenderError, not_empty};
 use super::film::Film;
 use super::integrate::{Pixel, for_each_pixel};
 use super::scene::Scene;
-use crate::atomic::Pending;
+use crate::files::whole::Pending;
 use crate::sampler::{OwenSobol, Sampler};
 
 /// Independent randomisations; their spread is the reference's standard error.

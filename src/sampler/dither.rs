@@ -6,8 +6,8 @@
 use super::anneal::{self, Cooling, Law, Neighbours, Pairs};
 use crate::error::ConfigError;
 use crate::kernel::{Kernel, SpatialKernel, TemporalKernel};
-use crate::lattice::Extent;
 use crate::table::SampleTable;
+use crate::table::extent::Extent;
 
 /// How a dither mask is made: one point of `[0, 1)^D` per pixel, arranged so that near pixels get unlike points.
 ///

@@ -6,8 +6,8 @@
 use super::anneal::{self, Cooling, Law, Neighbours, Pairs, autocorrelation};
 use crate::error::ConfigError;
 use crate::kernel::{Kernel, SpatialKernel, TemporalKernel};
-use crate::lattice::Extent;
 use crate::table::SampleTable;
+use crate::table::extent::Extent;
 
 /// How a filter-adapted table is made.
 ///

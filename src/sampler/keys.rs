@@ -12,9 +12,9 @@ use super::anneal::{self, Cooling, Dots, Neighbours};
 use super::mixed;
 use crate::error::ConfigError;
 use crate::kernel::{Kernel, SpatialKernel, TemporalKernel};
-use crate::lattice::Extent;
-use crate::stream::{self, Purpose};
+use crate::random::{self, Purpose};
 use crate::table::SampleTable;
+use crate::table::extent::Extent;
 
 /// How the keys are arranged.
 ///
@@ -119,7 +119,7 @@ struct Heavisides {
 impl Heavisides {
     fn random(count: usize, dims: usize, seed: u64) -> Self {
         let plane = |index: usize| {
-            let mut generator = stream::generator(seed, Purpose::Start, 3, index as u64);
+            let mut generator = random::generator(seed, Purpose::Start, 3, index as u64);
             let normal: Vec<f32> = (0..dims).map(|_| generator.sample(StandardNormal)).collect();
             let offset = normal.iter().map(|n| n * generator.random::<f32>()).sum();
             (normal, offset)
@@ -180,11 +180,11 @@ fn choose(
     seed: u64,
 ) -> Vec<bool> {
     let mut order: Vec<usize> = (0..extent.sites()).collect();
-    let mut first = stream::generator(seed, Purpose::Start, 4, 0);
+    let mut first = random::generator(seed, Purpose::Start, 4, 0);
     let mut chosen: Vec<bool> = order.iter().map(|_| first.next_u64() >> 63 == 1).collect();
     let mut around = vec![0.0; count];
     for pass in 0..PASSES {
-        order.shuffle(&mut stream::generator(seed, Purpose::Start, 5, pass));
+        order.shuffle(&mut random::generator(seed, Purpose::Start, 5, pass));
         for &site in &order {
             around.fill(0.0);
             let here = extent.site(site);

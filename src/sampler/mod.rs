@@ -50,8 +50,8 @@ pub use table::TableSampler;
 pub use white::WhiteNoise;
 
 use crate::error::ConfigError;
-use crate::lattice::{Extent, Site};
 use crate::table::SampleTable;
+use crate::table::extent::{Extent, Site};
 
 /// Random numbers of a renderer, as a pure function of where they are used.
 pub trait Sampler: Sync {
@@ -77,8 +77,8 @@ impl<S: Sampler + ?Sized> Sampler for &S {
 
 /// Mixes a seed and a list of words into 64 unrelated bits, one round of SplitMix64 a word.
 fn mixed(seed: u64, words: &[u64]) -> u64 {
-    words.iter().fold(crate::stream::finalise(seed), |state, &word| {
-        crate::stream::finalise(state ^ word.wrapping_mul(0x9e37_79b9_7f4a_7c15))
+    words.iter().fold(crate::random::finalise(seed), |state, &word| {
+        crate::random::finalise(state ^ word.wrapping_mul(0x9e37_79b9_7f4a_7c15))
     })
 }
 

@@ -3,10 +3,10 @@
 use std::f64::consts::PI;
 
 use super::{Sampler, mixed};
-use crate::domain::BELOW_ONE;
 use crate::error::ConfigError;
-use crate::lattice::{MOST_DIMS, Site};
-use crate::target::kronecker_steps;
+use crate::table::domain::BELOW_ONE;
+use crate::table::extent::{MOST_DIMS, Site};
+use crate::targets::kronecker_steps;
 
 /// A finite list of points of `[0, 1)^dims`.
 #[derive(Clone, Debug, PartialEq)]

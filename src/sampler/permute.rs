@@ -11,9 +11,9 @@ use rand::RngExt;
 use super::pattern::gcd;
 use super::{Sampler, mixed};
 use crate::error::ConfigError;
-use crate::lattice::Site;
-use crate::stream::{self, Purpose};
+use crate::random::{self, Purpose};
 use crate::table::SampleTable;
+use crate::table::extent::Site;
 
 /// Histogram sampling (the paper's section 3): at every pixel the estimate whose rank among `estimates` is the mask's
 /// value there.
@@ -92,7 +92,7 @@ impl SeedPermutation {
     /// # Errors
     /// An empty picture; a picture that is no multiple of the mask, or is larger than 2³¹ pixels.
     pub fn new([height, width]: [usize; 2], mask: &SampleTable, seed: u64) -> Result<Self, ConfigError> {
-        let picture = crate::lattice::Extent { frames: 1, height, width, spp: 1 };
+        let picture = crate::table::extent::Extent { frames: 1, height, width, spp: 1 };
         picture.validate(1)?;
         let extent = mask.extent();
         for (name, len, tile) in [("height", height, extent.height), ("width", width, extent.width)] {
@@ -163,7 +163,7 @@ impl SeedPermutation {
 
     /// Matches the order of values to that of the mask within blocks, at an offset of this frame.
     fn sort(&mut self, values: &[f64]) {
-        let mut place = stream::generator(self.seed, Purpose::Start, 6, self.frame as u64);
+        let mut place = random::generator(self.seed, Purpose::Start, 6, self.frame as u64);
         let offset = [place.random_range(0..BLOCK), place.random_range(0..BLOCK)];
         let ranges = |len: usize, offset: usize| {
             let mut cuts: Vec<usize> = (offset..len).step_by(BLOCK).collect();
@@ -195,7 +195,7 @@ impl SeedPermutation {
         const SWEEPS: usize = 500;
         let [height, width] = self.tile;
         let mut source: Vec<u32> = (0..(height * width) as u32).collect();
-        let mut generator = stream::generator(self.seed, Purpose::Start, 7, 0);
+        let mut generator = random::generator(self.seed, Purpose::Start, 7, 0);
         let next: Vec<f32> = (0..height * width).map(|p| self.level(p / width, p % width, 1)).collect();
         let reaches = |from: u32, p: usize| {
             let far = |from: usize, at: usize, len: usize| {
@@ -239,8 +239,8 @@ impl Sampler for SeedPermutation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lattice::Extent;
     use crate::sampler::DitherMask;
+    use crate::table::extent::Extent;
 
     fn correlation(pairs: &[(f64, f64)]) -> f64 {
         let count = pairs.len() as f64;

@@ -3,7 +3,7 @@
 //! [^burley]: Burley 2020, "Practical hash-based Owen scrambling", JCGT 9(4); the crate `sobol_burley`.
 
 use super::{Sampler, mixed};
-use crate::lattice::Site;
+use crate::table::extent::Site;
 
 /// An Owen-scrambled Sobol' sequence per pixel and frame, each with its own seed.
 ///

@@ -7,8 +7,8 @@ use super::anneal::{self, Cooling, Law, Neighbours, Pairs};
 use super::void_cluster;
 use crate::error::ConfigError;
 use crate::kernel::{Kernel, SpatialKernel, TemporalKernel};
-use crate::lattice::Extent;
 use crate::table::SampleTable;
+use crate::table::extent::Extent;
 
 /// How a spatio-temporal blue-noise mask is made.
 ///
@@ -69,7 +69,7 @@ impl Stbn {
             let ranks = void_cluster::ranks(&extent, &neighbours, seed);
             let sites = extent.sites() as f64;
             let value = |rank: u32| ((f64::from(rank) + 0.5) / sites) as f32;
-            let values = ranks.into_iter().map(|rank| value(rank).min(crate::domain::BELOW_ONE));
+            let values = ranks.into_iter().map(|rank| value(rank).min(crate::table::domain::BELOW_ONE));
             return Ok(SampleTable::trusted(extent, 1, values.collect()));
         }
         let values = anneal::nets(&extent, dims, seed);

@@ -6,9 +6,9 @@ use rand::RngExt;
 use rand::seq::SliceRandom;
 
 use crate::error::ConfigError;
-use crate::lattice::Extent;
-use crate::stream::{self, Purpose};
+use crate::random::{self, Purpose};
 use crate::table::SampleTable;
+use crate::table::extent::Extent;
 
 /// Jittered samples, independent from pixel to pixel.
 ///
@@ -25,7 +25,7 @@ pub fn stratified(extent: Extent, dims: usize, seed: u64) -> Result<SampleTable,
     let mut values = vec![0.0; extent.samples() * dims];
     let mut cells: Vec<usize> = (0..spp).collect();
     for (pixel, samples) in values.chunks_exact_mut(spp * dims).enumerate() {
-        let mut generator = stream::generator(seed, Purpose::Start, 1, pixel as u64);
+        let mut generator = random::generator(seed, Purpose::Start, 1, pixel as u64);
         for first in (0..dims).step_by(2) {
             cells.shuffle(&mut generator);
             let grid = if first + 1 < dims { [spp / rows, rows] } else { [spp, 1] };
@@ -34,7 +34,7 @@ pub fn stratified(extent: Extent, dims: usize, seed: u64) -> Result<SampleTable,
                 for (axis, value) in sample[first..dims.min(first + 2)].iter_mut().enumerate() {
                     let jitter: f32 = generator.random();
                     let at = (place[axis] as f32 + jitter) / grid[axis] as f32;
-                    *value = at.min(crate::domain::BELOW_ONE);
+                    *value = at.min(crate::table::domain::BELOW_ONE);
                 }
             }
         }
@@ -45,7 +45,7 @@ pub fn stratified(extent: Extent, dims: usize, seed: u64) -> Result<SampleTable,
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lattice::Site;
+    use crate::table::extent::Site;
 
     #[test]
     fn every_cell_holds_one_sample() {

@@ -1,8 +1,8 @@
 //! A sample table as a renderer reads it: tiled over the image and the animation.
 
 use super::{Sampler, WhiteNoise, mixed};
-use crate::lattice::{Extent, Site};
 use crate::table::SampleTable;
+use crate::table::extent::{Extent, Site};
 
 /// Reads an optimised table at pixel `(x mod width, y mod height)` of frame `t mod frames`.
 ///

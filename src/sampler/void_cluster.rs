@@ -6,8 +6,8 @@
 use rand::seq::SliceRandom;
 
 use super::anneal::Neighbours;
-use crate::lattice::Extent;
-use crate::stream::{self, Purpose};
+use crate::random::{self, Purpose};
+use crate::table::extent::Extent;
 
 /// Energies are integers, so that what is taken away is exactly what was put there.
 const UNIT: f64 = 1e6;
@@ -23,7 +23,7 @@ pub(super) fn ranks(extent: &Extent, neighbours: &Neighbours, seed: u64) -> Vec<
     let sites = extent.sites();
     let mut field = Field::new(extent, neighbours);
     let mut order: Vec<usize> = (0..sites).collect();
-    let mut generator = stream::generator(seed, Purpose::Start, 2, 0);
+    let mut generator = random::generator(seed, Purpose::Start, 2, 0);
     order.shuffle(&mut generator);
     for (place, &site) in order.iter().enumerate() {
         field.energy[site] = (place as u32 % JITTER) as i64;

@@ -1,7 +1,7 @@
 //! Independent uniform numbers without state: a hash of where the number is used.
 
 use super::{Sampler, mixed};
-use crate::lattice::Site;
+use crate::table::extent::Site;
 
 /// White noise: `hash(seed, frame, y, x, sample, dim)` with 24 bits, so every multiple of 2⁻²⁴ in `[0, 1)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

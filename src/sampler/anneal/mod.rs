@@ -22,8 +22,8 @@ pub(super) use neighbours::{Neighbours, autocorrelation};
 pub(super) use pairs::{Law, Pairs};
 
 use crate::error::ConfigError;
-use crate::lattice::Extent;
-use crate::stream::{self, Purpose};
+use crate::random::{self, Purpose};
+use crate::table::extent::Extent;
 
 /// Exponential cooling: the temperature `c_k` falls from `start` to `end` by equal factors.
 ///
@@ -77,7 +77,7 @@ pub(super) struct Patch {
 }
 
 /// Lanes of the vectors that sum over neighbours; rows of a patch leave room for one more.
-pub(super) const LANES: usize = crate::row::LANES;
+pub(super) const LANES: usize = crate::simd::LANES;
 
 impl Patch {
     fn empty(frames: usize, rows: usize, columns: usize, reach: [usize; 2]) -> Self {
@@ -174,7 +174,7 @@ pub(super) fn anneal(extent: &Extent, model: &impl Model, cooling: &Cooling, see
     let per_round = (proposals * down * across) as u128;
     let rounds = (u128::from(cooling.sweeps) * extent.sites() as u128).div_ceil(per_round) as u64;
     for round in 0..rounds {
-        let mut place = stream::generator(seed, Purpose::Regions, round, 0);
+        let mut place = random::generator(seed, Purpose::Regions, round, 0);
         let shift = [place.random_range(0..extent.height), place.random_range(0..extent.width)];
         let temperature = cooling.at(round as f64 / rounds as f64);
         let origin = |region: usize| {
@@ -189,7 +189,7 @@ pub(super) fn anneal(extent: &Extent, model: &impl Model, cooling: &Cooling, see
             .map(|region| {
                 let mut patch = Patch::empty(extent.frames, rows, columns, reach);
                 patch.for_each(extent, origin(region), true, |id, site| *id = ids[site]);
-                let generator = stream::generator(seed, Purpose::Swaps, round, region as u64);
+                let generator = random::generator(seed, Purpose::Swaps, round, region as u64);
                 model.anneal(&mut patch, Work { proposals, temperature, generator });
                 patch
             })
@@ -204,7 +204,7 @@ pub(super) fn anneal(extent: &Extent, model: &impl Model, cooling: &Cooling, see
 pub(super) fn shuffled(extent: &Extent, seed: u64) -> Vec<u32> {
     let mut ids: Vec<u32> = (0..extent.sites() as u32).collect();
     for (frame, ids) in ids.chunks_exact_mut(extent.height * extent.width).enumerate() {
-        ids.shuffle(&mut stream::generator(seed, Purpose::Start, 0, frame as u64));
+        ids.shuffle(&mut random::generator(seed, Purpose::Start, 0, frame as u64));
     }
     ids
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::LANES;
 use crate::error::ConfigError;
 use crate::kernel::{Kernel, Tap};
-use crate::lattice::Extent;
+use crate::table::extent::Extent;
 
 /// Weights of the neighbours of a site on a lattice that wraps: symmetric, without the site itself.
 #[derive(Clone, Debug)]

@@ -1,0 +1,127 @@
+//! What a scene will really consume: pixels and frames with any variance, and groups of dimensions.
+
+use crate::error::ConfigError;
+use crate::table::extent::{Extent, Site};
+
+/// The part of a table that a renderer reads in earnest.
+///
+/// A pixel that is *not* demanded has the same value whatever random numbers it is given: background, a visible
+/// light, full shadow. Its samples need no optimisation.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Demand {
+    frames: usize,
+    height: usize,
+    width: usize,
+    pixels: Vec<bool>,
+    groups: Vec<Vec<usize>>,
+}
+
+impl Demand {
+    /// A demand over `frames × height × width` pixels, in C order, for these groups of dimensions.
+    ///
+    /// # Errors
+    /// An empty axis, a number of pixels that does not fit, an empty group, a dimension twice in a group.
+    pub fn new(
+        [frames, height, width]: [usize; 3],
+        pixels: Vec<bool>,
+        groups: Vec<Vec<usize>>,
+    ) -> Result<Self, ConfigError> {
+        Extent { frames, height, width, spp: 1 }.validate(1)?;
+        let expected = frames * height * width;
+        if pixels.len() != expected {
+            return Err(ConfigError::ValueCount { what: "the demand", given: pixels.len(), expected });
+        }
+        for (group, dimensions) in groups.iter().enumerate() {
+            if dimensions.is_empty() {
+                return Err(ConfigError::EmptyGroup { group });
+            }
+            for (at, dimension) in dimensions.iter().enumerate() {
+                if dimensions[..at].contains(dimension) {
+                    return Err(ConfigError::RepeatedDimension { group, dimension: *dimension });
+                }
+            }
+        }
+        Ok(Self { frames, height, width, pixels, groups })
+    }
+
+    /// Frames, height and width.
+    pub fn shape(&self) -> [usize; 3] {
+        [self.frames, self.height, self.width]
+    }
+
+    /// One flag a site, in C order.
+    pub fn pixels(&self) -> &[bool] {
+        &self.pixels
+    }
+
+    /// Groups of dimensions that are consumed together, such as a light's `[0, 1]`.
+    pub fn groups(&self) -> &[Vec<usize>] {
+        &self.groups
+    }
+
+    /// Dimensions a table must have: one more than the largest named.
+    pub fn dims(&self) -> usize {
+        self.groups.iter().flatten().max().map_or(0, |largest| largest + 1)
+    }
+
+    /// Whether the site is demanded; it must lie inside the shape.
+    pub fn wants(&self, site: Site) -> bool {
+        self.pixels[(site.frame * self.height + site.y) * self.width + site.x]
+    }
+
+    /// Number of demanded sites.
+    pub fn count(&self) -> usize {
+        self.pixels.iter().filter(|&&wanted| wanted).count()
+    }
+
+    /// Demanded share of all sites, in `[0, 1]`.
+    pub fn share(&self) -> f64 {
+        self.count() as f64 / self.pixels.len() as f64
+    }
+
+    /// The demand on a smaller table that tiles the image and the animation: a site of the tile is demanded if
+    /// any site that reads it is.
+    ///
+    /// # Errors
+    /// An empty or oversized tile.
+    pub fn folded(&self, tile: &Extent) -> Result<Self, ConfigError> {
+        tile.validate(1)?;
+        let mut pixels = vec![false; tile.sites()];
+        let image = Extent { frames: self.frames, height: self.height, width: self.width, spp: 1 };
+        for index in (0..self.pixels.len()).filter(|&index| self.pixels[index]) {
+            pixels[tile.site_index(tile.wrapped(image.site(index), (0, 0, 0)))] = true;
+        }
+        Self::new([tile.frames, tile.height, tile.width], pixels, self.groups.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_demand_counts_and_folds() {
+        let mut pixels = vec![false; 2 * 4 * 6];
+        pixels[0] = true;
+        pixels[4 * 6 + 3 * 6 + 5] = true; // frame 1, y 3, x 5
+        let demand = Demand::new([2, 4, 6], pixels, vec![vec![0, 1], vec![3, 2]]).unwrap();
+        assert_eq!((demand.count(), demand.dims()), (2, 4));
+        assert!((demand.share() - 2.0 / 48.0).abs() < 1e-15);
+        assert!(demand.wants(Site { frame: 1, y: 3, x: 5 }));
+        let tile = demand.folded(&Extent { frames: 1, height: 2, width: 4, spp: 1 }).unwrap();
+        let wanted: Vec<usize> = (0..8).filter(|&i| tile.pixels()[i]).collect();
+        assert_eq!(wanted, [0, 5]); // (0, 0) and (3 mod 2, 5 mod 4) = (1, 1)
+    }
+
+    #[test]
+    fn a_bad_demand_is_named() {
+        let error = Demand::new([1, 2, 2], vec![true; 3], vec![]).unwrap_err();
+        assert!(matches!(error, ConfigError::ValueCount { given: 3, expected: 4, .. }));
+        let error = Demand::new([1, 0, 2], vec![], vec![]).unwrap_err();
+        assert_eq!(error, ConfigError::EmptyAxis { axis: "height" });
+        let error = Demand::new([1, 1, 1], vec![true], vec![vec![0], vec![]]).unwrap_err();
+        assert_eq!(error, ConfigError::EmptyGroup { group: 1 });
+        let error = Demand::new([1, 1, 1], vec![true], vec![vec![2, 2]]).unwrap_err();
+        assert_eq!(error, ConfigError::RepeatedDimension { group: 0, dimension: 2 });
+    }
+}

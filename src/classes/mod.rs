@@ -1,0 +1,89 @@
+//! Families of filters. A *class* is one member of a family: the filter of one pixel, of one label, of a prefix.
+
+mod custom;
+pub(crate) mod demand;
+mod family;
+mod listed;
+mod prefixes;
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+pub use self::custom::{ClassFamily, CustomClasses, Member};
+pub(crate) use self::family::{Family, Wanted};
+pub use self::listed::{LabelSet, Ramp};
+pub use self::prefixes::{Lengths, PrefixLength, PrefixOf};
+use crate::kernel::Kernel;
+
+/// A family of filters over the samples of a table (Salaün et al. 2022, Section 3).
+///
+/// Samples are numbered in the order of the table, `site * spp + sample`; a point set ([`crate::Extent::points`]) has one
+/// per site. A class that holds no sample is never drawn and costs nothing.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Classes {
+    /// One class per pixel and frame: the kernel centred there.
+    Lattice {
+        /// The filter.
+        kernel: Kernel,
+        /// How its weights enter.
+        form: Form,
+    },
+    /// One class: all samples alike. It is what makes a table unbiased.
+    WholeTable,
+    /// One class per frame: its samples alike.
+    PerFrame,
+    /// One class per pixel and frame: its samples alike (of use for `spp > 1`).
+    PerPixel,
+    /// One class per set of labels: the samples that carry one of them, alike.
+    Labelled {
+        /// Label of each sample; any numbers.
+        labels: Arc<[u32]>,
+        /// The classes. A set whose labels no sample carries is an empty class.
+        subsets: Vec<LabelSet>,
+    },
+    /// One class per ramp: filters that rise or fall along a coordinate of the samples. Its level sets are the samples
+    /// beyond any threshold, so that every part of the ramp looks like the target.
+    Ramps {
+        /// Class coordinate of each sample, in `[0, 1]`.
+        coordinates: Arc<[f64]>,
+        /// The classes.
+        ramps: Vec<Ramp>,
+    },
+    /// One class per length: the first so many samples.
+    Prefixes {
+        /// What is to be cut short: the table, or the samples of each pixel.
+        of: PrefixOf,
+        /// Where.
+        lengths: Lengths,
+    },
+    /// A family of the caller's own.
+    Custom(CustomClasses),
+}
+
+impl Classes {
+    /// A family of the caller's own.
+    pub fn custom(family: impl ClassFamily + 'static) -> Self {
+        Self::Custom(CustomClasses::new(family))
+    }
+
+    /// One class per set of labels, all with the same weight.
+    pub fn labelled(labels: impl Into<Arc<[u32]>>, subsets: impl IntoIterator<Item = Vec<u32>>) -> Self {
+        let subsets = subsets.into_iter().map(|labels| LabelSet { labels, weight: 1.0 }).collect();
+        Self::Labelled { labels: labels.into(), subsets }
+    }
+}
+
+/// How the weights of a filter enter the transport.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Form {
+    /// Uniform level `z`, unweighted subset `{j : w_j > z}`: the objective of Salaün et al. 2022. Cheap.
+    #[default]
+    LevelSets,
+    /// All samples under the filter, each with its weight. By the triangle inequality a bound at least as tight,
+    /// at the cost of the whole support in every slice.
+    Weighted,
+}

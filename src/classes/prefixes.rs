@@ -1,0 +1,152 @@
+//! Prefixes: the first samples of a table or of each of its pixels.
+
+use std::ops::Range;
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::ConfigError;
+use crate::table::extent::Extent;
+
+/// What is cut short by a prefix.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PrefixOf {
+    /// The table, in its own order: a progressive sequence.
+    Table,
+    /// The samples of each pixel and frame, for renderers that stop early where they may.
+    Pixel,
+}
+
+/// Lengths of the prefixes, in samples.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Lengths {
+    /// All of them: 1, 2, 3, …. A step visits a random few.
+    Every,
+    /// 1, 2, 4, … and the whole.
+    PowersOfTwo,
+    /// These.
+    Given(Vec<PrefixLength>),
+}
+
+/// A prefix among [`Lengths::Given`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PrefixLength {
+    /// Samples, from 1 to all.
+    pub length: usize,
+    /// Weight of the pull on its samples beside that of the other prefixes; positive.
+    pub weight: f64,
+}
+
+/// Prefixes planned for an extent.
+#[derive(Clone, Debug)]
+pub(crate) struct Prefixes {
+    /// Samples of a block, and number of blocks.
+    block: usize,
+    blocks: usize,
+    spp: usize,
+    lengths: Vec<PrefixLength>,
+}
+
+impl Prefixes {
+    pub(crate) fn new(of: PrefixOf, lengths: &Lengths, extent: Extent) -> Result<Self, ConfigError> {
+        let block = match of {
+            PrefixOf::Table => extent.samples(),
+            PrefixOf::Pixel => extent.spp,
+        };
+        // The first samples are in all prefixes: the short ones decide about them, and the later samples follow.
+        let weighed = |length: usize| PrefixLength { length, weight: 1.0 / length as f64 };
+        let lengths = match lengths {
+            Lengths::Every => (1..=block).map(weighed).collect(),
+            Lengths::PowersOfTwo => {
+                let powers = std::iter::successors(Some(1_usize), |length| length.checked_mul(2));
+                powers.take_while(|&length| length < block).chain([block]).map(weighed).collect()
+            }
+            Lengths::Given(given) if given.is_empty() => {
+                return Err(ConfigError::NoClasses { family: "prefixes" });
+            }
+            Lengths::Given(given) => given.clone(),
+        };
+        for &PrefixLength { length, weight } in &lengths {
+            if !(1..=block).contains(&length) {
+                return Err(ConfigError::PrefixLength { length, most: block });
+            }
+            super::listed::check_weight("the weight of a prefix", weight)?;
+        }
+        Ok(Self { block, blocks: extent.samples() / block, spp: extent.spp, lengths })
+    }
+
+    pub(crate) fn members(&self) -> usize {
+        self.blocks * self.lengths.len()
+    }
+
+    pub(crate) fn blocks(&self) -> usize {
+        self.blocks
+    }
+
+    fn of(&self, member: usize) -> (usize, PrefixLength) {
+        (member / self.lengths.len(), self.lengths[member % self.lengths.len()])
+    }
+
+    /// Numbers of the samples.
+    pub(crate) fn run(&self, member: usize) -> Range<u32> {
+        let (block, prefix) = self.of(member);
+        let begin = (block * self.block) as u32;
+        begin..begin + prefix.length as u32
+    }
+
+    pub(crate) fn emphasis(&self, member: usize) -> f64 {
+        self.of(member).1.weight
+    }
+
+    pub(crate) fn mean_length(&self) -> f64 {
+        self.lengths.iter().map(|prefix| prefix.length as f64).sum::<f64>() / self.lengths.len() as f64
+    }
+
+    pub(crate) fn mean_mass(&self) -> f64 {
+        let masses = self.lengths.iter().map(|prefix| prefix.weight * prefix.length as f64);
+        masses.sum::<f64>() / self.lengths.len() as f64
+    }
+
+    pub(crate) fn sizes(&self) -> Vec<usize> {
+        let mut sizes: Vec<usize> = self.lengths.iter().map(|prefix| prefix.length).collect();
+        sizes.sort_unstable();
+        sizes.dedup();
+        sizes
+    }
+
+    /// Marks the classes that hold a sample of the site.
+    pub(crate) fn mark(&self, site: usize, holds: &mut [bool]) {
+        let first = site * self.spp;
+        let (block, within) = (first / self.block, first % self.block);
+        let classes = holds[block * self.lengths.len()..].iter_mut().zip(&self.lengths);
+        classes.for_each(|(holds, prefix)| *holds |= prefix.length > within);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn prefixes_of_pixels_start_at_each_pixel() {
+        let extent = Extent { frames: 1, height: 1, width: 3, spp: 6 };
+        let prefixes = Prefixes::new(PrefixOf::Pixel, &Lengths::PowersOfTwo, extent).unwrap();
+        assert_eq!(prefixes.sizes(), [1, 2, 4, 6]);
+        assert_eq!(prefixes.members(), 12);
+        assert_eq!(prefixes.run(4), 6..7);
+        assert_eq!(prefixes.run(11), 12..18);
+        let prefixes = Prefixes::new(PrefixOf::Table, &Lengths::Every, extent).unwrap();
+        assert_eq!(prefixes.members(), 18);
+        assert_eq!(prefixes.run(16), 0..17);
+    }
+
+    #[test]
+    fn a_class_is_marked_if_it_reaches_the_site() {
+        let extent = Extent::points(8);
+        let prefixes = Prefixes::new(PrefixOf::Table, &Lengths::PowersOfTwo, extent).unwrap();
+        let mut holds = [false; 4];
+        prefixes.mark(3, &mut holds);
+        assert_eq!(holds, [false, false, true, true]);
+    }
+}

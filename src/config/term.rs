@@ -1,0 +1,103 @@
+//! What a user asks for: terms, dimension groups, and how slices are drawn.
+
+use serde::{Deserialize, Serialize};
+
+use crate::classes::Classes;
+use crate::error::ConfigError;
+use crate::simd::LANES;
+use crate::table::extent::MOST_DIMS;
+use crate::targets::Target;
+
+/// Most slices of a step.
+const MOST_SLICES: usize = i32::MAX as usize;
+
+/// One part of the objective: a family of classes, what their samples should resemble, and in which dimensions.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Term {
+    /// The filters.
+    pub classes: Classes,
+    /// The measure that a filtered subset should resemble.
+    pub target: Target,
+    /// The dimensions that this term sees, as a renderer consumes them together.
+    pub dims: Vec<usize>,
+    /// Share of the work: the number of slices that touch a sample is proportional to it, in the mean. Where no term has
+    /// classes per pixel, as in a point set, every class has its slices in each step, and their pull on a sample is
+    /// proportional to it instead. Positive.
+    pub weight: f64,
+    /// How its slices move the samples.
+    pub role: Role,
+}
+
+/// How the slices of a term move the samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Role {
+    /// All such terms together are descended.
+    #[default]
+    Descend,
+    /// After each step of the descent, samples move all the way to where the slices of the term wanted them before it
+    /// (times [`crate::Config::balance`]): alternating projections rather than a compromise of weights. Meant for few
+    /// slices of large classes, whose small but systematic displacements a compromise would drown.
+    Balance,
+}
+
+/// A group of dimensions that a renderer consumes together, with its share of the work.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DimensionGroup {
+    /// Dimensions of the table, each once.
+    pub dims: Vec<usize>,
+    /// Weight relative to the other groups; positive.
+    pub weight: f64,
+}
+
+impl DimensionGroup {
+    /// Consecutive pairs of dimensions with weight 1 (a last odd one alone), and all dimensions together with half
+    /// that weight if there are more than two. No table has more than 64 dimensions; more are left out.
+    pub fn pairs_and_whole(dims: usize) -> Vec<Self> {
+        let all: Vec<usize> = (0..dims.min(MOST_DIMS)).collect();
+        let mut groups: Vec<Self> =
+            all.chunks(2).map(|pair| Self { dims: pair.to_vec(), weight: 1.0 }).collect();
+        if dims > 2 {
+            groups.push(Self { dims: all, weight: 0.5 });
+        }
+        groups
+    }
+}
+
+/// How slices are drawn.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Slicing {
+    /// Directions per filtered subset, `1..=16`. Sixteen ride in the lanes of one vector; fewer cost the same.
+    pub directions: usize,
+    /// Share of the directions that lie on coordinate axes, in `[0, 1]`. Axes replace whole frames: there are none for
+    /// groups of more than `directions` dimensions and for subsets too large to share directions, such as the whole
+    /// table. More sharpens one-dimensional marginals at the cost of all else.
+    pub axis_share: f64,
+    /// Slices per step. `None`: a sixteenth of an epoch, where an epoch visits every pixel of every frame once; in a point
+    /// set `directions` slices of every class (of 16 classes of a term that has more).
+    pub batch_slices: Option<usize>,
+}
+
+impl Default for Slicing {
+    fn default() -> Self {
+        Self { directions: LANES, axis_share: 0.0, batch_slices: None }
+    }
+}
+
+impl Slicing {
+    pub(crate) fn validate(&self) -> Result<(), ConfigError> {
+        let out_of_range = |name, value, expected| Err(ConfigError::OutOfRange { name, value, expected });
+        if !(1..=LANES).contains(&self.directions) {
+            return out_of_range("directions per subset", self.directions as f64, "from 1 to 16");
+        }
+        if !(0.0..=1.0).contains(&self.axis_share) {
+            return out_of_range("the axis share", self.axis_share, "in [0, 1]");
+        }
+        if let Some(slices) = self.batch_slices
+            && !(1..=MOST_SLICES).contains(&slices)
+        {
+            return out_of_range("the batch size", slices as f64, "from 1 to 2147483647 slices");
+        }
+        Ok(())
+    }
+}

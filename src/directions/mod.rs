@@ -1,0 +1,207 @@
+//! Slicing directions of a dimension group, drawn for one subset at a time.
+
+pub(crate) mod cube_bank;
+pub(crate) mod target_bank;
+
+use std::sync::Arc;
+
+use rand::{Rng, RngExt};
+use rand_distr::StandardNormal;
+
+use crate::directions::cube_bank::{Bank, Banks};
+use crate::directions::target_bank::Atlas;
+use crate::error::ConfigError;
+use crate::random::{self, Purpose};
+use crate::simd::{LANES, Row};
+use crate::targets::Target;
+
+/// Draws the directions of subsets in one number of dimensions.
+///
+/// * One dimension has one direction.
+/// * In the plane the directions of a subset divide the half circle evenly, from a phase that its caller
+///   stratifies over the subsets of a step.
+/// * In more dimensions they are rows of random orthonormal frames ([`Bank`]); orthonormal frames and even angles
+///   are variance reduction over independent directions (Sisouk et al. 2025; Petrovic et al. 2025).
+#[derive(Clone, Debug)]
+pub(crate) struct Slicer {
+    dims: usize,
+    per_subset: usize,
+    axis_share: f64,
+    bank: Option<Arc<Bank>>,
+    /// Directions and laws of a target other than the cube.
+    atlas: Option<Arc<Atlas>>,
+    /// Cosine and sine of evenly spaced angles, turned as one for each subset. Where their number is even, the second
+    /// half of them are the first turned by a right angle, and not listed.
+    fan: Vec<[f64; 2]>,
+}
+
+/// The `index`th of `count` directions that are spread evenly: over the half circle in the plane, at random in more
+/// dimensions.
+pub(crate) fn spread(dims: usize, index: usize, count: usize) -> Vec<f64> {
+    if dims == 1 {
+        return vec![1.0];
+    }
+    if dims == 2 {
+        let angle = std::f64::consts::PI * (index as f64 + 0.5) / count as f64;
+        let (sin, cos) = libm::sincos(angle);
+        return vec![cos, sin];
+    }
+    let mut generator = random::generator(0, Purpose::Frames, dims as u64, 1 << 32 | index as u64);
+    let gaussian: Vec<f64> = (0..dims).map(|_| generator.sample(StandardNormal)).collect();
+    let length = gaussian.iter().map(|component| component * component).sum::<f64>().sqrt();
+    gaussian.iter().map(|component| component / length.max(f64::MIN_POSITIVE)).collect()
+}
+
+/// Directions of one subset: lanes `0..count` are unit vectors, the others zero.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Directions {
+    /// Directions in use.
+    pub count: usize,
+    /// Components, one row of lanes per dimension.
+    pub theta: Vec<Row>,
+    /// Block of the bank that the lanes come from, in three and more dimensions.
+    pub block: usize,
+    /// Places in the atlas that the lanes come from, if there is one.
+    pub laws: [u32; LANES],
+    /// Lanes that were replaced by a coordinate axis.
+    pub on_axis: [bool; LANES],
+    /// Whether the upper half of the lanes holds the lower half turned by a right angle, in the plane: their laws
+    /// are the same.
+    pub paired: bool,
+}
+
+impl Directions {
+    fn look_up(&mut self, atlas: &Atlas, lane: usize, index: usize) {
+        self.laws[lane] = index as u32;
+        self.theta.iter_mut().zip(atlas.theta(index)).for_each(|(row, &component)| row[lane] = component);
+    }
+}
+
+impl Slicer {
+    /// Draws `per_subset` directions (`1..=LANES`; one in one dimension) for a target of term `term`, of which the share `axis_share` lies
+    /// on coordinate axes.
+    pub(crate) fn new(
+        dims: usize,
+        per_subset: usize,
+        axis_share: f64,
+        target: &Target,
+        banks: &mut Banks,
+        term: usize,
+    ) -> Result<Self, ConfigError> {
+        let per_subset = if dims == 1 { 1 } else { per_subset.min(LANES) };
+        let (mut bank, mut atlas) = (None, None);
+        if *target != Target::UniformCube {
+            atlas = Some(banks.atlas(term, dims, target)?);
+        } else if dims > 2 {
+            bank = Some(banks.bank(dims, target));
+        }
+        let mut slicer = Self { dims, per_subset, axis_share, bank, atlas, fan: Vec::new() };
+        let spacing = slicer.spacing();
+        let listed = if per_subset % 2 == 0 { per_subset / 2 } else { per_subset };
+        slicer.fan.extend((0..listed).map(|lane| {
+            let (sin, cos) = libm::sincos(spacing * lane as f64);
+            [cos, sin]
+        }));
+        Ok(slicer)
+    }
+
+    pub(crate) fn atlas(&self) -> Option<&Atlas> {
+        self.atlas.as_deref()
+    }
+
+    pub(crate) fn per_subset(&self) -> usize {
+        self.per_subset
+    }
+
+    pub(crate) fn bank(&self) -> Option<&Bank> {
+        self.bank.as_deref()
+    }
+
+    /// Whether [`Slicer::draw`] asks its generator for anything.
+    pub(crate) fn is_random(&self) -> bool {
+        self.bank.is_some() || self.axis_share > 0.0 && self.dims > 1
+    }
+
+    /// Draws directions; `phase` in `[0, 1)` turns the fan of the plane.
+    pub(crate) fn draw(&self, phase: f64, generator: &mut impl Rng, directions: &mut Directions) {
+        directions.count = self.per_subset;
+        directions.paired = self.dims == 2 && self.per_subset == LANES && self.atlas.is_none();
+        directions.on_axis = [false; LANES];
+        directions.theta.resize(self.dims, [0.0; LANES]);
+        for row in &mut directions.theta {
+            row[self.per_subset..].fill(0.0);
+        }
+        if let Some(atlas) = &self.atlas {
+            for lane in 0..self.per_subset {
+                directions.look_up(atlas, lane, atlas.index(phase, lane, self.per_subset));
+            }
+            if self.axis_share > 0.0 && self.dims > 1 {
+                self.align(generator, directions);
+            }
+            return;
+        }
+        match &self.bank {
+            None if self.dims == 1 => directions.theta[0][0] = 1.0,
+            None => self.turn(phase, &mut directions.theta),
+            Some(bank) => self.pick(bank, generator, directions),
+        }
+        if self.axis_share > 0.0 && self.dims > 1 {
+            self.align(generator, directions);
+        }
+    }
+
+    /// Angle between neighbours in the plane.
+    fn spacing(&self) -> f64 {
+        std::f64::consts::PI / self.per_subset as f64
+    }
+
+    fn turn(&self, phase: f64, theta: &mut [Row]) {
+        // From `libm`, whose bits do not depend on the platform.
+        let (sin, cos) = libm::sincos(self.spacing() * phase);
+        let [across, along] = theta else { return };
+        for (lane, [fixed_cos, fixed_sin]) in self.fan.iter().enumerate() {
+            across[lane] = (fixed_cos * cos - fixed_sin * sin) as f32;
+            along[lane] = (fixed_sin * cos + fixed_cos * sin) as f32;
+        }
+        for lane in self.fan.len()..self.per_subset {
+            let half = lane - self.fan.len();
+            (across[lane], along[lane]) = (-along[half], across[half]);
+        }
+    }
+
+    fn pick(&self, bank: &Bank, generator: &mut impl Rng, directions: &mut Directions) {
+        directions.block = generator.random_range(0..bank.len());
+        let block = bank.block(directions.block);
+        let signs: u64 = generator.random();
+        // A random permutation of the axes by insertion (Fisher and Yates), without a buffer.
+        for (dim, row) in block.theta.iter().enumerate() {
+            let sign = if signs >> (dim % 64) & 1 == 0 { 1.0 } else { -1.0 };
+            let place = generator.random_range(0..=dim);
+            directions.theta.swap(place, dim);
+            for (component, stored) in directions.theta[place].iter_mut().zip(row).take(self.per_subset) {
+                *component = sign * stored;
+            }
+        }
+    }
+
+    /// Replaces whole frames by the coordinate axes, so that every axis gets its share.
+    fn align(&self, generator: &mut impl Rng, directions: &mut Directions) {
+        let frames = self.per_subset / self.dims;
+        let wanted = self.axis_share * self.per_subset as f64 / self.dims as f64;
+        let replaced = ((wanted + generator.random::<f64>()) as usize).min(frames);
+        for frame in 0..replaced {
+            for axis in 0..self.dims {
+                // In the plane, directions half a fan apart are orthogonal; in a bank, frames are consecutive.
+                let lane = if self.dims == 2 { frame + axis * frames } else { frame * self.dims + axis };
+                if let Some(atlas) = &self.atlas {
+                    directions.look_up(atlas, lane, atlas.len() + axis);
+                    continue;
+                }
+                directions.on_axis[lane] = true;
+                for (dim, row) in directions.theta.iter_mut().enumerate() {
+                    row[lane] = if dim == axis { 1.0 } else { 0.0 };
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,180 @@
+//! A term made ready for one extent: everything that does not depend on the samples is computed once.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::classes::{Family, Wanted};
+use crate::config::term::{Role, Slicing, Term};
+use crate::directions::Slicer;
+use crate::directions::cube_bank::{Banks, Boundary};
+use crate::error::ConfigError;
+use crate::table::domain::Domain;
+use crate::table::extent::Extent;
+use crate::targets::Target;
+use crate::transport::lanes::LONGEST;
+use crate::transport::network::Network;
+
+/// A term with its family of classes, its directions, and what sorting its subsets takes.
+#[derive(Clone, Debug)]
+pub(crate) struct PlannedTerm {
+    pub spec: Term,
+    pub family: Family,
+    pub slicer: Slicer,
+    /// Largest subset that is sorted in lanes; 0 if none is.
+    pub longest: usize,
+    /// Networks of the subsets that are sorted in lanes, by their number of blocks.
+    pub networks: Vec<Network>,
+    /// Boundaries of the quantile cells, where laws are tabulated, for the most frequent sizes.
+    pub grids: BTreeMap<usize, Vec<Boundary>>,
+    /// Per dimension, the square of the unit of distances along the slices in that of the coordinates; 1 but for pictures
+    /// that are not square.
+    pub stretch: Vec<f32>,
+    /// Subsets drawn per step; need not be whole.
+    pub rate: f64,
+    /// Whether every step draws as many, so that a class sees its directions in even steps.
+    pub steady: bool,
+    /// Factor on what its slices pull; 1 where the number of slices says all.
+    pub pull: f64,
+}
+
+/// Sizes of subsets that are planned for one by one.
+const MOST_SIZES: usize = 128;
+/// Classes of a term that a steady step visits at most.
+const VISITS: usize = 16;
+/// Levels of a class that a steady step draws.
+const LEVELS: usize = 4;
+
+impl PlannedTerm {
+    /// Plans a term; `None` if no demand touches any of its classes.
+    pub(crate) fn new(
+        index: usize,
+        term: &Term,
+        extent: Extent,
+        domains: &[Domain],
+        slicing: &Slicing,
+        wanted: Wanted,
+        banks: &mut Banks,
+    ) -> Result<Option<Self>, ConfigError> {
+        let dims = domains.len();
+        if !(term.weight > 0.0 && term.weight.is_finite()) {
+            let expected = "above 0 and finite";
+            return Err(ConfigError::OutOfRange {
+                name: "the weight of a term",
+                value: term.weight,
+                expected,
+            });
+        }
+        if term.dims.is_empty() {
+            return Err(ConfigError::EmptyGroup { group: index });
+        }
+        for (place, &dimension) in term.dims.iter().enumerate() {
+            if dimension >= dims {
+                return Err(ConfigError::NoSuchDimension { group: index, dimension, dims });
+            }
+            if term.dims[..place].contains(&dimension) {
+                return Err(ConfigError::RepeatedDimension { group: index, dimension });
+            }
+        }
+        if let Some(target) = term.target.dims()
+            && target != term.dims.len()
+        {
+            return Err(ConfigError::TargetDims { term: index, target, dims: term.dims.len() });
+        }
+        if term.target != Target::UniformCube
+            && let Some(&dimension) = term.dims.iter().find(|&&dim| domains[dim] == Domain::Torus)
+        {
+            return Err(ConfigError::TargetOnTorus { term: index, dimension });
+        }
+        let family = Family::new(&term.classes, extent, wanted)?;
+        if family.visited() == 0 {
+            return Ok(None);
+        }
+        let sizes = family.sizes();
+        // A subset that is not sorted in lanes gains nothing from sharing its directions.
+        let long = sizes[0] > LONGEST;
+        let per_subset = if long { 1 } else { slicing.directions };
+        let slicer =
+            Slicer::new(term.dims.len(), per_subset, slicing.axis_share, &term.target, banks, index)?;
+        let in_lanes = !family.is_weighted() && slicer.per_subset() > 1;
+        let sizes: BTreeSet<usize> = match sizes.last() {
+            _ if !in_lanes => BTreeSet::new(),
+            Some(&largest) if family.is_partial() || sizes.len() > MOST_SIZES => {
+                partial_sizes(largest.min(LONGEST)).collect()
+            }
+            _ => sizes.into_iter().filter(|&size| size <= LONGEST).collect(),
+        };
+        let longest = sizes.last().copied().unwrap_or(0);
+        let networks = (0..=Network::blocks(longest)).map(Network::of_blocks).collect();
+        let grids = match slicer.bank() {
+            Some(_) => sizes.into_iter().map(|n| (n, Boundary::grid(n).collect())).collect(),
+            None => BTreeMap::new(),
+        };
+        let scales = term.target.scales(term.dims.len());
+        let stretch = scales.iter().map(|scale| (1.0 / (scale * scale)) as f32).collect();
+        Ok(Some(Self {
+            spec: term.clone(),
+            family,
+            slicer,
+            longest,
+            networks,
+            grids,
+            stretch,
+            rate: 0.0,
+            steady: false,
+            pull: 1.0,
+        }))
+    }
+
+    /// Slices that a step draws, in the mean.
+    pub(crate) fn slices(&self) -> f64 {
+        self.rate * self.slicer.per_subset() as f64
+    }
+
+    /// Draws some slices of every class, or of [`VISITS`] of them, in each step.
+    fn visit_steadily(&mut self, directions: usize) {
+        let levels = if self.family.has_levels() { LEVELS } else { 1 };
+        // Subsets that don't share directions come once for each.
+        let alone = self.slicer.per_subset() == 1 && self.spec.dims.len() > 1;
+        let turns = if alone { directions } else { 1 };
+        self.steady = true;
+        self.rate = (self.family.visited().min(VISITS) * levels * turns) as f64;
+    }
+}
+
+/// Decides how many subsets a step draws of each term.
+///
+/// Where pixels have classes of their own, a step is a small part of an epoch and touches are shared by weight; a slice
+/// touches as many samples as its subset holds. Elsewhere there are few classes, none of which can be spared in a step:
+/// all are drawn, and the weights of the terms enter as factors.
+pub(crate) fn share_work(terms: &mut [PlannedTerm], extent: Extent, slicing: &Slicing) {
+    let descended = |term: &&PlannedTerm| term.spec.role == Role::Descend;
+    let per_site = !terms.iter().any(|term| descended(&term))
+        || terms.iter().filter(descended).any(|term| term.family.is_per_site());
+    let touches = |term: &PlannedTerm| term.spec.weight / term.family.mean_size();
+    if per_site || slicing.batch_slices.is_some() {
+        let default = || (classes(terms, extent) * slicing.directions).div_ceil(16);
+        let slices = slicing.batch_slices.unwrap_or_else(default);
+        let total: f64 = terms.iter().map(touches).sum();
+        for term in terms {
+            term.rate = touches(term) / total * slices as f64 / term.slicer.per_subset() as f64;
+        }
+        return;
+    }
+    for term in terms.iter_mut() {
+        term.visit_steadily(slicing.directions);
+        term.pull = touches(term) / term.slices();
+    }
+    let largest = terms.iter().map(|term| term.pull).fold(0.0, f64::max);
+    terms.iter_mut().for_each(|term| term.pull /= largest);
+}
+
+/// Pixels and frames that the kernels visit; all of them if there is no kernel.
+pub(crate) fn classes(terms: &[PlannedTerm], extent: Extent) -> usize {
+    let visited = terms.iter().filter(|term| term.family.taps().is_some()).map(|term| term.family.visited());
+    visited.max().unwrap_or(extent.sites())
+}
+
+/// Sizes to plan for where any up to `largest` may occur: all of the small ones, then steps of a tenth.
+fn partial_sizes(largest: usize) -> impl Iterator<Item = usize> {
+    let next = |&size: &usize| (size < usize::MAX / 2).then(|| size + (size / 10).max(1));
+    std::iter::successors(Some(1), next).take_while(move |&size| size < largest).chain([largest])
+}

@@ -1,0 +1,89 @@
+//! The closed form and its gradient in `f64`, written for clarity: the textbook twin of [`super::pairs`].
+
+use rayon::prelude::*;
+
+use super::field::MeanDistance;
+use super::mean_projection;
+use crate::config::term::Role;
+use crate::kernel::autocorrelation::autocorrelation;
+use crate::objective::Objective;
+use crate::objective::plan::PlannedTerm;
+
+/// Mean over the descended terms by weight, and over the pixels (by the square of what their filter holds), of the
+/// squared sliced Cramér distance; and its gradient.
+pub(crate) fn value_and_gradient(objective: &Objective, points: &[f64]) -> (f64, Vec<f64>) {
+    let (mut value, mut gradient) = (0.0, vec![0.0; points.len()]);
+    let terms = || objective.terms.iter().filter(|term| term.spec.role == Role::Descend);
+    let weights: f64 = terms().map(|term| term.spec.weight).sum();
+    for term in terms() {
+        value += term.spec.weight / weights
+            * add_term(objective, term, points, |coordinate, slope| {
+                gradient[coordinate] += term.spec.weight / weights * slope;
+            });
+    }
+    (value, gradient)
+}
+
+/// The value of one term; its gradient goes to `add(coordinate, slope)`.
+fn add_term(
+    objective: &Objective,
+    term: &PlannedTerm,
+    points: &[f64],
+    mut add: impl FnMut(usize, f64),
+) -> f64 {
+    let (extent, dims) = (objective.extent, &term.spec.dims);
+    let taps = term.family.taps().unwrap_or_default();
+    let pairs = autocorrelation(taps, &extent, 0.0);
+    let field = MeanDistance::new();
+    let wants = |site: usize| objective.wanted.site(site);
+    let samples_of = |site: usize| site * extent.spp..(site + 1) * extent.spp;
+    let point = |sample: usize| -> Vec<f64> {
+        dims.iter().map(|&dim| points[sample * objective.dims + dim]).collect()
+    };
+    // The sum over pixels of the squared sum of their filter, which normalises both filters and mean.
+    let squared_masses: f64 = (0..extent.sites())
+        .map(|site| {
+            let at = extent.site(site);
+            let lands = taps.iter().filter(|tap| {
+                wants(extent.site_index(extent.wrapped(at, (tap.dt.into(), tap.dy.into(), tap.dx.into()))))
+            });
+            (lands.map(|tap| tap.weight).sum::<f64>() * extent.spp as f64).powi(2)
+        })
+        .sum();
+    let scale = mean_projection(dims.len()) / squared_masses;
+    let one = |sample: usize| {
+        let own = point(sample);
+        let (mut held, mut distances, mut slope) = (0.0, 0.0, vec![0.0; dims.len()]);
+        let at = extent.site(sample / extent.spp);
+        for tap in &pairs {
+            let offset = (tap.dt.into(), tap.dy.into(), tap.dx.into());
+            let site = extent.site_index(extent.wrapped(at, offset));
+            for other in samples_of(site).filter(|_| wants(site)) {
+                held += tap.weight;
+                let other = point(other);
+                let squares: f64 = own.iter().zip(&other).map(|(a, b)| (a - b) * (a - b)).sum();
+                let distance = squares.sqrt();
+                distances += tap.weight * distance;
+                if distance > 0.0 {
+                    for ((slope, a), b) in slope.iter_mut().zip(&own).zip(&other) {
+                        *slope -= tap.weight * (a - b) / distance;
+                    }
+                }
+            }
+        }
+        let mut outward = vec![0.0; dims.len()];
+        field.gradient(&own, &mut outward);
+        slope.iter_mut().zip(&outward).for_each(|(slope, outward)| *slope += held * outward);
+        (held * field.value(&own) - 0.5 * distances, slope)
+    };
+    let wanted: Vec<usize> = (0..extent.sites()).filter(|&site| wants(site)).flat_map(samples_of).collect();
+    let parts: Vec<_> = wanted.par_iter().map(|&sample| one(sample)).collect();
+    let mut value = -0.5 * field.mean(dims.len()) * squared_masses;
+    for (&sample, (part, slopes)) in wanted.iter().zip(parts) {
+        value += part;
+        for (&dim, slope) in dims.iter().zip(slopes) {
+            add(sample * objective.dims + dim, scale * slope);
+        }
+    }
+    scale * value
+}

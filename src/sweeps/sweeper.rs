@@ -1,0 +1,271 @@
+//! Sweeps: every sample once, in random order, moved along the gradient of the closed form.
+
+use std::ops::{AddAssign, Range};
+
+use pulp::{Arch, NullaryFnOnce};
+use rand::seq::SliceRandom;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::pairs::Pairs;
+use super::planes::{Planes, Run};
+use crate::config::term::Role;
+use crate::error::ConfigError;
+use crate::objective::Objective;
+use crate::optimizer::report::Work;
+use crate::random::{self, Purpose};
+use crate::simd::{self, LANES, Row};
+use crate::slices::walk::Schedule;
+use crate::table::domain::Domain;
+
+/// Steps per sweep. The samples of a step move together, as if the others of that step stood still; with few of them next
+/// to each other, large steps are safe.
+pub(crate) const STEPS: usize = 16;
+
+/// How sweeps move the samples: `x ← x + rate · pull`.
+///
+/// The pull is the negative gradient of [`crate::Objective::cramer`], brought to the scale where the natural step is 1: around a
+/// sample that sits well among its `n` neighbours there is room of a radius `r` with `V_d r^d n = 1` in the unit cube of
+/// `d` dimensions, and the curvature there is one sample's share of the gradient, per `r`.
+///
+/// A step moves a sixteenth of the neighbours together; what they do to each other's pull grows with their number. Rates beyond
+/// `16 / (n r)` don't settle, and are taken as that: in two dimensions 5 at one sample per pixel of a still picture, 1.3 at
+/// sixteen; in four dimensions 2 and 0.25.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sweeps {
+    /// Step size of a run of sweeps alone. One of `n` sweeps begins no higher than at `√n`, and ends no lower than at its
+    /// beginning divided by `n`: few sweeps can neither mend what large steps break nor settle.
+    pub rate: Schedule,
+    /// Step size of sweeps that follow slices in a run. Larger ones would undo what the slices have arranged.
+    pub polish: Schedule,
+    /// Pairs held together less than this share of the strongest are left out; in `[0, 1)`.
+    pub truncation: f64,
+}
+
+impl Default for Sweeps {
+    fn default() -> Self {
+        let [rate, polish] = [2.2, 1.3].map(|first| Schedule::geometric(first, 0.12));
+        Self { rate, polish, truncation: 0.007 }
+    }
+}
+
+impl Sweeps {
+    /// The step size over the sweeps of a run.
+    pub(crate) fn of_a_run(&self, work: Work) -> Schedule {
+        if work.slices_per_class > 0 {
+            return self.polish;
+        }
+        let Schedule { first, last, shape } = self.rate;
+        let sweeps = work.sweeps.max(1) as f64;
+        let first = first.min(sweeps.sqrt());
+        Schedule { first, last: last.max(first / sweeps), shape }
+    }
+
+    pub(crate) fn validate(&self) -> Result<(), ConfigError> {
+        self.rate.validate()?;
+        self.polish.validate()?;
+        let (name, value, expected) = ("the truncation of sweeps", self.truncation, "in [0, 1)");
+        if (0.0..1.0).contains(&value) {
+            Ok(())
+        } else {
+            Err(ConfigError::OutOfRange { name, value, expected })
+        }
+    }
+}
+
+/// A table on its way through sweeps.
+///
+/// A *run* of [`LANES`] consecutive pixels is the unit of work. Each step of a sweep moves a random sixteenth of the
+/// runs; their pulls are computed in parallel from the same table, then applied, so that nothing depends on threads.
+pub(crate) struct Sweeper {
+    arch: Arch,
+    terms: Vec<Pairs>,
+    /// What a term's pull counts on each of its coordinates.
+    factors: Vec<Vec<f32>>,
+    margin: usize,
+    planes: Planes,
+    dims: usize,
+    /// Runs that hold a demanded sample, in the order of this sweep.
+    order: Vec<u32>,
+    pulls: Vec<Row>,
+    /// Largest rate that settles.
+    most: f64,
+    /// Whether samples have moved since the table was read or written.
+    ahead: bool,
+}
+
+impl Sweeper {
+    /// Plans the sweeps of an objective.
+    ///
+    /// # Errors
+    /// A descended term without a closed form.
+    pub(crate) fn new(objective: &Objective, sweeps: &Sweeps) -> Result<Self, ConfigError> {
+        super::check(objective)?;
+        let (extent, dims) = (objective.extent, objective.dims);
+        let planned = || objective.terms.iter().filter(|term| term.spec.role == Role::Descend);
+        let terms: Vec<Pairs> = planned().map(|term| Pairs::new(term, extent, sweeps.truncation)).collect();
+        // A coordinate's pull is the mean over the terms that see it, by weight.
+        let mut seen = vec![0.0; dims];
+        for term in planned() {
+            term.spec.dims.iter().for_each(|&dim| seen[dim] += term.spec.weight);
+        }
+        let factors = planned().zip(&terms).map(|(term, pairs)| {
+            let strength = term.spec.weight * pairs.natural_step();
+            term.spec.dims.iter().map(|&dim| (strength / seen[dim]) as f32).collect()
+        });
+        let factors = factors.collect();
+        let most = COLLECTIVE * STEPS as f64 / terms.iter().map(Pairs::natural_step).fold(1.0, f64::max);
+        let margin = terms.iter().map(Pairs::reach).max().unwrap_or(0);
+        let planes = Planes::new(extent, dims, margin, &objective.wanted);
+        let wanted = |&index: &u32| {
+            let run = planes.run(index as usize);
+            (0..planes.len(run)).any(|lane| planes.wants(run, lane))
+        };
+        let order = (0..planes.runs() as u32).filter(wanted).collect();
+        Ok(Self {
+            arch: Arch::new(),
+            terms,
+            factors,
+            margin,
+            planes,
+            dims,
+            order,
+            pulls: Vec::new(),
+            most,
+            ahead: false,
+        })
+    }
+
+    /// Reads the table anew.
+    pub(crate) fn load(&mut self, points: &[f32]) {
+        self.planes.load(points);
+        self.ahead = false;
+    }
+
+    /// Writes the table back, if samples have moved.
+    pub(crate) fn store(&mut self, points: &mut [f32]) {
+        if std::mem::take(&mut self.ahead) {
+            self.planes.store(points);
+        }
+    }
+
+    /// Begins a sweep, in an order named by seed and sweep.
+    pub(crate) fn shuffle(&mut self, seed: u64, sweep: u64) {
+        self.order.sort_unstable();
+        self.order.shuffle(&mut random::generator(seed, Purpose::Sweep, sweep, 0));
+        // Within a step the order doesn't matter, and neighbours share rows.
+        for step in 0..STEPS {
+            let part = part(self.order.len(), step);
+            self.order[part].sort_unstable();
+        }
+    }
+
+    /// Moves the samples of one step of the sweep by `rate` times their pull. Returns the pulls' mean square. What moves is
+    /// the copy, until it is stored.
+    pub(crate) fn step(&mut self, step: usize, rate: f64, domains: &[Domain]) -> MeanSquare {
+        let rate = rate.min(self.most);
+        let Self { arch, terms, factors, margin, planes, dims, order, pulls, ahead, .. } = self;
+        let (dims, margin) = (*dims, *margin);
+        let runs = &order[part(order.len(), step)];
+        pulls.resize(runs.len() * dims, [0.0; LANES]);
+        let tasks = pulls.par_chunks_exact_mut(dims).zip(runs);
+        tasks.with_min_len(RUNS_PER_TASK).for_each(|(pulls, &run)| {
+            let run = planes.run(run as usize);
+            arch.dispatch(PullOfRun { terms, factors, planes, margin, run, pulls });
+        });
+        let mut all = MeanSquare::default();
+        for (pulls, &run) in pulls.chunks_exact(dims).zip(runs) {
+            let run = planes.run(run as usize);
+            for (dim, (pull, &domain)) in pulls.iter().zip(domains).enumerate() {
+                all.add(pull, |lane| lane < planes.len(run) && planes.wants(run, lane));
+                planes.shift(dim, run, &pull.map(|pull| rate as f32 * pull), domain);
+            }
+        }
+        *ahead = true;
+        all
+    }
+
+    /// The pulls of a step that was just taken, by coordinate.
+    #[cfg(test)]
+    pub(super) fn each_pull(&self, step: usize, mut visit: impl FnMut(usize, f32)) {
+        let runs = &self.order[part(self.order.len(), step)];
+        for (pulls, &run) in self.pulls.chunks_exact(self.dims).zip(runs) {
+            let run = self.planes.run(run as usize);
+            for lane in (0..self.planes.len(run)).filter(|&lane| self.planes.wants(run, lane)) {
+                let first = self.planes.first(run, lane);
+                pulls.iter().enumerate().for_each(|(dim, pull)| visit(first + dim, pull[lane]));
+            }
+        }
+    }
+
+    #[cfg(test)]
+    pub(super) fn pull_of_run<'a>(&'a self, run: usize, pulls: &'a mut [Row]) -> PullOfRun<'a> {
+        let Self { terms, factors, planes, margin, .. } = self;
+        PullOfRun { terms, factors, planes, margin: *margin, run: planes.run(run), pulls }
+    }
+}
+
+/// The part of a list that a step of the sweep takes.
+fn part(len: usize, step: usize) -> Range<usize> {
+    len * step / STEPS..len * (step + 1) / STEPS
+}
+
+/// A mean square on its way.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct MeanSquare {
+    sum: f64,
+    count: usize,
+}
+
+impl AddAssign for MeanSquare {
+    fn add_assign(&mut self, other: Self) {
+        self.sum += other.sum;
+        self.count += other.count;
+    }
+}
+
+impl MeanSquare {
+    #[inline(always)]
+    fn add(&mut self, pulls: &Row, is_one: impl Fn(usize) -> bool) {
+        let mut squares = [0.0; LANES];
+        for lane in (0..LANES).filter(|&lane| is_one(lane)) {
+            squares[lane] = pulls[lane] * pulls[lane];
+            self.count += 1;
+        }
+        self.sum += f64::from(simd::sum(squares));
+    }
+
+    pub(crate) fn root(self) -> f64 {
+        (self.sum / self.count.max(1) as f64).sqrt()
+    }
+}
+
+/// Largest motion of all neighbours together, in units of what they see, that settles: at one sample per pixel, from 1.3 on
+/// nothing did; at 0.6 tables of many samples are slower.
+const COLLECTIVE: f64 = 1.0;
+
+/// Runs per task: some ten microseconds.
+const RUNS_PER_TASK: usize = 2;
+
+/// The pull on one run, compiled once per instruction set.
+pub(super) struct PullOfRun<'a> {
+    terms: &'a [Pairs],
+    factors: &'a [Vec<f32>],
+    planes: &'a Planes,
+    margin: usize,
+    run: Run,
+    pulls: &'a mut [Row],
+}
+
+impl NullaryFnOnce for PullOfRun<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { terms, factors, planes, margin, run, pulls } = self;
+        pulls.fill([0.0; LANES]);
+        for (pairs, factors) in terms.iter().zip(factors) {
+            pairs.add_pull(planes, margin, run, factors, pulls);
+        }
+    }
+}
