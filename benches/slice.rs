@@ -4,10 +4,11 @@
 //! nearest `n` pixels with equal weights, so that every slice selects exactly `n` samples.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use fsot::{
-    Classes, Config, Extent, Form, Kernel, Optimizer, Role, SpatialKernel, SpatialTap, Target,
-    TemporalKernel, Term,
-};
+use fsot::classes::{Classes, FilterForm};
+use fsot::config::{Role, Term};
+use fsot::kernel::{SpatialKernel, SpatialTap, TemporalKernel};
+use fsot::targets::Target;
+use fsot::{Config, Extent, Kernel, Optimizer};
 
 const SIDE: usize = 64;
 const SIZES: [usize; 11] = [1, 2, 4, 8, 14, 36, 64, 155, 256, 1024, SIDE * SIDE];
@@ -44,7 +45,7 @@ fn slices_per_step(size: usize) -> usize {
 fn config(size: usize, dims: usize) -> Config {
     let kernel = Kernel::product(SpatialKernel::Taps(nearest(size)), TemporalKernel::None);
     let term = Term {
-        classes: Classes::Lattice { kernel, form: Form::LevelSets },
+        classes: Classes::Lattice { kernel, form: FilterForm::LevelSets },
         target: Target::UniformCube,
         dims: (0..dims).collect(),
         weight: 1.0,

@@ -8,7 +8,10 @@ mod selected;
 use std::ops::ControlFlow;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use fsot::{Classes, Config, Demand, Ended, Extent, Optimizer, SpatialKernel, TemporalKernel, Until};
+use fsot::classes::{Classes, Demand};
+use fsot::config::EndReason;
+use fsot::kernel::{SpatialKernel, TemporalKernel};
+use fsot::{Config, Extent, Optimizer, Until};
 
 /// A table's configuration and its name.
 fn cases() -> Vec<(&'static str, Config)> {
@@ -78,7 +81,7 @@ fn demand(criterion: &mut Criterion) {
                 let mut optimizer =
                     Optimizer::for_demand(Config::new(extent, 2), &demand).expect("the cases are valid");
                 let report = optimizer.run(Until::SlicesPerClass(128), |_| ControlFlow::Continue(()));
-                assert_eq!(report.expect("the run is valid").ended, Ended::Finished);
+                assert_eq!(report.expect("the run is valid").ended, EndReason::Finished);
             });
         });
     }

@@ -270,7 +270,7 @@ pub enum ConfigError {
 }
 
 /// A picture that cannot serve as a density.
-#[cfg(feature = "render")]
+#[cfg(feature = "image")]
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum PictureError {

@@ -23,40 +23,6 @@
 //!
 //! `table.save("table.npy")` writes it for everybody else. You can stop here; the rest is what happens inside.
 //!
-//! # What it minimises
-//!
-//! Each pixel's *filter* (or class) `w_p` gives the samples around it weights. A level `z` turns the weights into a plain
-//! subset of samples; a direction `theta` turns the subset into numbers; their distance to the projected target is a
-//! problem of sorting. The mean over pixels, levels and directions,
-//!
-//! ```text
-//! L(X) = E_p ∫₀^{w_max} (|S_z(p)| / N) · E_theta W(X_{S_z(p)}·theta, mu·theta) dz,
-//! ```
-//!
-//! bounds the filtered error of every Lipschitz integrand from above. [`Optimizer`] descends it with a batch of random
-//! slices `(p, z, theta)` per step; [`metrics::bound()`] measures it with exact distances;
-//! [`Objective::value_and_gradient`] hands it to an optimiser of your own.
-//!
-//! # All slices at once
-//!
-//! With Cramér's distance in place of Wasserstein's, and weights in place of levels, the mean over *all* directions has a
-//! closed form, the energy distance: see [`Objective::cramer`]. It is the squared filtered error of random half-spaces,
-//! and its exact gradient needs no sorting and no random numbers. A *sweep* ([`Optimizer::sweep`]) moves every sample along
-//! it once. Sweeps are the sooner at any filtered error; slices reach the lower bound, and hold where there is no closed
-//! form (on a torus). [`Until::Seconds`] chooses: sweeps alone if time is short, slices and then sweeps if there is more,
-//! slices alone where sweeps are impossible.
-//!
-//! | symbol | here | shape, unit |
-//! |---|---|---|
-//! | x | [`SampleTable`] | `[frame, y, x, sample, dim]`, `f32` in `[0, 1)`, C order |
-//! | c | [`Site`] and sample | lattice position of a sample |
-//! | w_p(c) | [`Kernel`], [`Classes`] | weight relative to the largest, in `[0, 1]` |
-//! | z | [`Slice::level`] | `[0, 1)` |
-//! | S_z(p) | subset | `{j : w_p(c_j) > z}` |
-//! | theta | [`Slice::direction`] | unit vector over the dimensions of a [`Term`] |
-//! | mu | [`Target`] | measure on `[0, 1]^D`; its law along theta is [`Projected`] |
-//! | N, n | samples of the table, of a subset | |
-//!
 //! # Point sets
 //!
 //! Pixels are one family of classes among others, and the cube one target. [`Config::classes`] makes sets whose labelled
@@ -66,25 +32,17 @@
 //! ```
 //! use std::ops::ControlFlow;
 //!
-//! use fsot::{Config, Optimizer, Subsets, Target, Until, metrics};
+//! use fsot::config::LabelSubsets;
+//! use fsot::targets::Target;
+//! use fsot::{Config, Optimizer, Until, metrics};
 //!
-//! let mut optimizer = Optimizer::new(Config::classes(&[64, 64], 2, &Subsets::EachAndAll))?;
+//! let mut optimizer = Optimizer::new(Config::classes(&[64, 64], 2, &LabelSubsets::EachAndAll))?;
 //! optimizer.run(Until::SlicesPerClass(1000), |_progress| ControlFlow::Continue(()))?;
 //! let points: Vec<f64> = optimizer.into_table().values().iter().map(|&value| value.into()).collect();
 //! let of_the_first_label = metrics::sliced_w2(&points[..2 * 64], 2, &Target::UniformCube, 64)?;
 //! assert!(of_the_first_label < 0.02);
 //! # Ok::<(), fsot::ConfigError>(())
 //! ```
-//!
-//! # Where it deviates from the papers
-//!
-//! * A sample moves towards the exact *mean of its quantile cell*, not towards a random point of the target: the
-//!   gradient has no noise but that of the slices.
-//! * Tables are *unbiased* by default. The published objective pulls samples to the middle of the square, since a filter
-//!   often holds a single one; a few slices of the whole table and of whole frames after each step
-//!   ([`Role::Balance`]) remove this.
-//! * Levels reach the true maximum of the filter, also where a temporal kernel peaks in the past.
-//! * Domains end like intervals by default, since integrands do; [`Domain::Torus`] per dimension on request.
 //!
 //! # What it promises
 //!
@@ -101,54 +59,42 @@
 //! What it is not: a renderer, a denoiser, a GPU library, or a source of random numbers for anything that needs
 //! statistical independence between pixels.
 //!
+//! [`ClassFamily`]: classes::ClassFamily
+//! [`Classes`]: classes::Classes
+//! [`Measure`]: targets::Measure
+//! [`TableError`]: files::TableError
+//! [`Target`]: targets::Target
+//!
 //! [^salaun]: Salaün, Georgiev, Seidel, Singh 2022, "Scalable multi-class sampling via filtered sliced optimal transport",
 //!     ACM TOG 41(6), <https://doi.org/10.1145/3550454.3555484>.
 //! [^korac]: Korać, Salaün, Georgiev, Grittmann, Slusallek, Myszkowski, Singh 2023, "Perceptual error optimization for Monte
 //!     Carlo animation rendering", SIGGRAPH Asia, <https://doi.org/10.1145/3610548.3618146>.
 
-mod classes;
-mod config;
+pub mod classes;
+pub mod config;
 mod directions;
 mod error;
-mod files;
-mod kernel;
+pub mod files;
+pub mod kernel;
 mod laws;
+pub mod method;
 pub mod metrics;
 mod objective;
 mod optimizer;
-mod random;
-#[cfg(feature = "render")]
-pub mod render;
-#[cfg(feature = "render")]
-pub mod sampler;
+pub mod random;
 mod simd;
 mod slices;
 mod sweeps;
 mod table;
-mod targets;
+pub mod targets;
 mod transport;
 
-pub use classes::demand::Demand;
-pub use classes::{
-    ClassFamily, Classes, CustomClasses, Form, LabelSet, Lengths, Member, PrefixLength, PrefixOf, Ramp,
-};
-pub use config::point_sets::Subsets;
-pub use config::term::{DimensionGroup, Role, Slicing, Term};
-#[cfg(feature = "render")]
-pub use error::PictureError;
-pub use error::{ConfigError, FormatError, TableError};
-pub use files::metadata::{BoundEstimate, BoundRecord, KernelTaps, Metadata, RunRecord};
-pub use kernel::{Kernel, SpatialKernel, SpatialTap, Tap, TemporalKernel};
-pub use laws::Projected;
+pub use config::Config;
+pub use config::until::Until;
+pub use error::ConfigError;
+pub use kernel::Kernel;
 pub use objective::{Objective, Slice};
-pub use optimizer::report::{Ended, RunReport, StepReport, Until, Work};
-pub use optimizer::{Config, Optimizer};
-pub use slices::walk::{Descent, Schedule, Shape};
-pub use sweeps::Sweeps;
+pub use optimizer::Optimizer;
+pub use optimizer::report::{RunReport, StepReport};
 pub use table::SampleTable;
-pub use table::domain::{BELOW_ONE, Domain};
 pub use table::extent::{Extent, Site};
-pub use table::vectors::Mapping;
-pub use targets::{CustomTarget, Density, Measure, PointCloud, Target};
-#[cfg(feature = "render")]
-pub use targets::{Inks, Tone};

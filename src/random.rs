@@ -26,23 +26,22 @@ pub(crate) enum Purpose {
     Sweep,
     /// Parameters of one test integrand.
     Integrands = 32,
-    /// The swaps of one region in one round of an annealing.
-    #[cfg(feature = "render")]
-    Swaps = 48,
-    /// Where the regions of a round lie.
-    #[cfg(feature = "render")]
-    Regions,
-    /// The arrangement that an annealing starts from, and other starts of the compared samplers.
-    #[cfg(feature = "render")]
-    Start,
+}
+
+impl From<Purpose> for u64 {
+    fn from(purpose: Purpose) -> u64 {
+        purpose as u64
+    }
 }
 
 /// The generator with this name.
+///
+/// `purpose` keeps what consumers ask for apart; numbers below 1024 are this project's own.
 #[inline]
-pub(crate) fn generator(seed: u64, purpose: Purpose, step: u64, index: u64) -> Xoshiro256PlusPlus {
+pub fn generator(seed: u64, purpose: impl Into<u64>, step: u64, index: u64) -> Xoshiro256PlusPlus {
     let mut state = [0_u8; 32];
     let mut word = seed;
-    for (bytes, salt) in state.chunks_exact_mut(8).zip([purpose as u64, step, index, 0x5eed]) {
+    for (bytes, salt) in state.chunks_exact_mut(8).zip([purpose.into(), step, index, 0x5eed]) {
         word = finalise(word.wrapping_add(salt.wrapping_mul(0x9e37_79b9_7f4a_7c15)));
         bytes.copy_from_slice(&word.to_le_bytes());
     }
@@ -57,7 +56,7 @@ pub(crate) fn unnamed() -> Xoshiro256PlusPlus {
 
 /// SplitMix64's bijective finaliser.
 #[inline]
-pub(crate) fn finalise(mut word: u64) -> u64 {
+pub fn finalise(mut word: u64) -> u64 {
     word = word.wrapping_add(0x9e37_79b9_7f4a_7c15);
     word = (word ^ (word >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     word = (word ^ (word >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -68,6 +67,14 @@ pub(crate) fn finalise(mut word: u64) -> u64 {
 pub(crate) fn uniforms(seed: u64, count: usize) -> Vec<f32> {
     let mut generator = generator(seed, Purpose::WhiteNoise, 0, 0);
     (0..count).map(|_| generator.random()).collect()
+}
+
+/// Steps of a Kronecker sequence, `(1/φ, 1/φ², …)` with the root `φ` of `φ^(dims + 1) = φ + 1`: the golden ratio for one
+/// dimension, R2 for two (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
+pub fn kronecker_steps(dims: usize) -> Vec<f64> {
+    // Newton's iteration would do; this contraction cannot leave (1, 2).
+    let phi = (0..100).fold(1.5_f64, |phi, _| (1.0 + phi).powf(1.0 / (dims as f64 + 1.0)));
+    (1..=dims as i32).map(|d| phi.powi(-d)).collect()
 }
 
 #[cfg(test)]

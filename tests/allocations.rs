@@ -3,7 +3,8 @@
 use std::ops::ControlFlow;
 
 use allocation_counter::measure;
-use fsot::{Config, Extent, Optimizer, Until, Work};
+use fsot::config::Work;
+use fsot::{Config, Extent, Optimizer, Until};
 
 /// Allocations of 64 steps and 4 sweeps, after 64 times as many have grown the buffers to the largest subsets.
 fn allocations(extent: Extent) -> u64 {

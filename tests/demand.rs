@@ -3,10 +3,9 @@
 
 use std::ops::ControlFlow;
 
-use fsot::{
-    Config, ConfigError, Demand, Domain, Extent, Objective, Optimizer, Role, SampleTable, Site, Until,
-    metrics,
-};
+use fsot::classes::Demand;
+use fsot::config::{Domain, Role};
+use fsot::{Config, ConfigError, Extent, Objective, Optimizer, SampleTable, Site, Until, metrics};
 
 const EXTENT: Extent = Extent { frames: 2, height: 24, width: 40, spp: 2 };
 

@@ -3,10 +3,9 @@
 
 use std::ops::ControlFlow;
 
-use fsot::{
-    Config, Descent, Ended, Extent, Lengths, Optimizer, Role, SampleTable, StepReport, Subsets, Until, Work,
-    metrics,
-};
+use fsot::classes::PrefixLengths;
+use fsot::config::{Descent, EndReason, LabelSubsets, Role, Work};
+use fsot::{Config, Extent, Optimizer, SampleTable, StepReport, Until, metrics};
 
 fn config(extent: [usize; 4], dims: usize, descent: Descent, seed: u64) -> Config {
     let [frames, height, width, spp] = extent;
@@ -42,7 +41,7 @@ fn cases() -> Vec<Config> {
     ]
 }
 
-/// Subsets that share their sorts between threads: alone, and in flight with others, where a worker that waits for a part of
+/// LabelSubsets that share their sorts between threads: alone, and in flight with others, where a worker that waits for a part of
 /// its sort is lent to another subset. Balanced subsets that are too many to wait, and one that is too large.
 #[test]
 fn threads_do_not_change_a_bit_of_large_subsets() {
@@ -54,8 +53,8 @@ fn threads_do_not_change_a_bit_of_large_subsets() {
     assert!(drawn > (1 << 20) / (64 * 64 * 16), "{drawn}");
     let configs = [
         many,
-        Config::classes(&[20_000; 10], 2, &Subsets::EachAndAll),
-        Config::progressive(200_000, 2, Lengths::PowersOfTwo),
+        Config::classes(&[20_000; 10], 2, &LabelSubsets::EachAndAll),
+        Config::progressive(200_000, 2, PrefixLengths::PowersOfTwo),
         config([40, 60, 60, 1], 2, Descent::barycentric(), 1),
     ];
     for config in configs {
@@ -157,7 +156,7 @@ fn seconds_are_reproduced_by_slices() {
     ] {
         let mut timed = optimizer(&config);
         let report = timed.run(Until::Seconds(0.1), on).unwrap();
-        assert_eq!(report.ended, Ended::Finished);
+        assert_eq!(report.ended, EndReason::Finished);
         let mut counted = optimizer(&config);
         let again = counted.run(Until::Work(report.work), on).unwrap();
         assert_eq!((again.steps, again.slices), (report.steps, report.slices));
@@ -227,7 +226,7 @@ fn a_stopped_run_keeps_what_was_reached() {
                 if step.step == 17 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             })
             .unwrap();
-        assert_eq!((report.ended, report.steps), (Ended::Stopped, 17));
+        assert_eq!((report.ended, report.steps), (EndReason::Stopped, 17));
         assert!(planned > 17);
         let mut replayed = optimizer(&config);
         let mut slices = 0;

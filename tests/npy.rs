@@ -3,10 +3,10 @@
 use std::fs;
 use std::path::Path;
 
-use fsot::{
-    BoundEstimate, BoundRecord, ConfigError, Extent, FormatError, KernelTaps, Metadata, RunRecord,
-    SampleTable, TableError, Tap,
-};
+use fsot::files::TableError;
+use fsot::files::{BoundEstimate, BoundRecord, FormatError, KernelTaps, Metadata, RunRecord};
+use fsot::kernel::Tap;
+use fsot::{ConfigError, Extent, SampleTable};
 use proptest::prelude::*;
 use tempfile::{TempDir, tempdir};
 

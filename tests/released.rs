@@ -3,8 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use fsot::classes::Classes;
 use fsot::metrics::{Bias, Integrands, bound, filtered_error};
-use fsot::{Classes, Config, Objective, SampleTable};
+use fsot::{Config, Objective, SampleTable};
 
 /// Filtered error, bound and bias, as ratios to white noise.
 struct Figures {

@@ -1,6 +1,7 @@
 //! How many samples a step selects: the unit of the benches' throughput.
 
-use fsot::{Objective, Role, Term};
+use fsot::Objective;
+use fsot::config::{Role, Term};
 
 /// Samples that the slices of a step select, in the mean, for objectives that descend kernels alone.
 pub fn per_step(objective: &Objective) -> f64 {

@@ -19,12 +19,12 @@ pub trait ClassFamily: std::fmt::Debug + Send + Sync {
     fn members(&self, extent: &Extent) -> usize;
 
     /// The filter of class `member`, below [`ClassFamily::members`].
-    fn member(&self, extent: &Extent, member: usize) -> Member;
+    fn member(&self, extent: &Extent, member: usize) -> ClassSamples;
 }
 
 /// The filter of one class of a [`ClassFamily`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct Member {
+pub struct ClassSamples {
     /// Samples and their weights, in any order; each sample once at most, weights from 0 to 1. Sample `s` of a site has
     /// the number `extent.site_index(site) * extent.spp + s`.
     pub samples: Vec<(u32, f64)>,
@@ -35,7 +35,7 @@ pub struct Member {
 /// A [`ClassFamily`] behind a shared pointer.
 ///
 /// It is serialised as its name. Code cannot be read back from a name, so that deserialising it is an error that says so:
-/// read the rest of the configuration and put the family in again with [`crate::Classes::custom`].
+/// read the rest of the configuration and put the family in again with [`Classes::custom`](crate::classes::Classes::custom).
 #[derive(Clone, Debug)]
 pub struct CustomClasses(Arc<dyn ClassFamily>);
 

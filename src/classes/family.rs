@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::listed::Listed;
 use super::prefixes::Prefixes;
-use super::{Classes, Form};
+use super::{Classes, FilterForm};
 use crate::error::ConfigError;
 use crate::kernel::Tap;
 use crate::table::extent::Extent;
@@ -28,7 +28,7 @@ enum Shape {
     Blocks { sites: usize, wanted: Wanted },
     /// Taps by falling weight, with offsets made non-negative modulo the extent and counted in sites: frames, rows,
     /// columns.
-    Lattice { taps: Vec<Tap>, offsets: Vec<[u32; 3]>, form: Form, wanted: Wanted },
+    Lattice { taps: Vec<Tap>, offsets: Vec<[u32; 3]>, form: FilterForm, wanted: Wanted },
     /// Runs from the start of a block of samples.
     Prefixes { prefixes: Prefixes, wanted: Wanted },
     /// Samples of each class, written out; what is not demanded is left out already.
@@ -84,7 +84,7 @@ impl Family {
         let spp = extent.spp as f64;
         let mean_size = match &shape {
             Shape::Blocks { sites, .. } => *sites as f64 * spp,
-            Shape::Lattice { taps, form: Form::Weighted, .. } => taps.len() as f64 * spp,
+            Shape::Lattice { taps, form: FilterForm::Weighted, .. } => taps.len() as f64 * spp,
             Shape::Lattice { taps, .. } => taps.iter().map(|tap| tap.weight).sum::<f64>() * spp,
             Shape::Prefixes { prefixes, .. } => prefixes.mean_length(),
             Shape::Listed(listed) => listed.mean_size(),
@@ -157,7 +157,7 @@ impl Family {
     pub(crate) fn has_levels(&self) -> bool {
         match &self.shape {
             Shape::Blocks { .. } | Shape::Prefixes { .. } => false,
-            Shape::Lattice { form, .. } => *form == Form::LevelSets,
+            Shape::Lattice { form, .. } => *form == FilterForm::LevelSets,
             Shape::Listed(listed) => listed.has_levels(),
         }
     }
@@ -209,7 +209,7 @@ impl Family {
                 mass / self.visited() as f64
             }
             Shape::Listed(listed) => listed.mean_mass(),
-            Shape::Lattice { taps, form: Form::Weighted, .. } => {
+            Shape::Lattice { taps, form: FilterForm::Weighted, .. } => {
                 self.mean_size * taps.iter().map(|tap| tap.weight).sum::<f64>() / taps.len() as f64
             }
             _ => self.mean_size,
@@ -230,7 +230,7 @@ impl Family {
             Shape::Prefixes { prefixes, .. } => return prefixes.sizes(),
             Shape::Listed(listed) => return listed.sizes(),
             Shape::Blocks { sites, .. } => vec![*sites],
-            Shape::Lattice { taps, form: Form::Weighted, .. } => vec![taps.len()],
+            Shape::Lattice { taps, form: FilterForm::Weighted, .. } => vec![taps.len()],
             Shape::Lattice { taps, .. } => {
                 let ends = 1..=taps.len();
                 ends.filter(|&n| n == taps.len() || taps[n].weight < taps[n - 1].weight).collect()
@@ -278,8 +278,8 @@ impl Family {
         let offsets = match &self.shape {
             Shape::Prefixes { .. } | Shape::Listed(_) => &[],
             Shape::Blocks { .. } => &[],
-            Shape::Lattice { offsets, form: Form::Weighted, .. } => offsets.as_slice(),
-            Shape::Lattice { taps, offsets, form: Form::LevelSets, .. } => {
+            Shape::Lattice { offsets, form: FilterForm::Weighted, .. } => offsets.as_slice(),
+            Shape::Lattice { taps, offsets, form: FilterForm::LevelSets, .. } => {
                 &offsets[..taps.partition_point(|tap| tap.weight > level)]
             }
         };
@@ -328,7 +328,7 @@ impl Family {
 
     /// Whether samples enter with their weights.
     pub(crate) fn is_weighted(&self) -> bool {
-        matches!(&self.shape, Shape::Lattice { form: Form::Weighted, .. })
+        matches!(&self.shape, Shape::Lattice { form: FilterForm::Weighted, .. })
     }
 
     /// Writes the weights of the samples that [`Family::select`] lists; nothing where all weigh 1.
@@ -349,7 +349,7 @@ mod tests {
 
     const EXTENT: Extent = Extent { frames: 4, height: 20, width: 12, spp: 3 };
 
-    fn lattice(form: Form) -> Classes {
+    fn lattice(form: FilterForm) -> Classes {
         let spatial = SpatialKernel::Gaussian { sigma_px: 2.1 };
         Classes::Lattice { kernel: Kernel::product(spatial, TemporalKernel::Ema { alpha: 0.4 }), form }
     }
@@ -372,7 +372,7 @@ mod tests {
 
     #[test]
     fn level_sets_hold_the_samples_above_the_level() {
-        let family = Family::new(&lattice(Form::LevelSets), EXTENT, Wanted::All).unwrap();
+        let family = Family::new(&lattice(FilterForm::LevelSets), EXTENT, Wanted::All).unwrap();
         let taps = family.taps().unwrap();
         let mut samples = Vec::new();
         for (member, level) in [(0, 0.0), (17, 0.3), (959, 0.5), (500, 0.999), (240, 0.01)] {
@@ -387,7 +387,7 @@ mod tests {
     /// E_z |S_z| is the sum of the relative weights; a fine midpoint rule over z is exact to one step per tap.
     #[test]
     fn levels_select_each_tap_as_often_as_it_weighs() {
-        let family = Family::new(&lattice(Form::LevelSets), EXTENT, Wanted::All).unwrap();
+        let family = Family::new(&lattice(FilterForm::LevelSets), EXTENT, Wanted::All).unwrap();
         let taps = family.taps().unwrap();
         let steps = 20_000;
         let mut hits = vec![0.0; EXTENT.samples()];
@@ -408,7 +408,7 @@ mod tests {
 
     #[test]
     fn the_weighted_form_lists_the_support_with_its_weights() {
-        let family = Family::new(&lattice(Form::Weighted), EXTENT, Wanted::All).unwrap();
+        let family = Family::new(&lattice(FilterForm::Weighted), EXTENT, Wanted::All).unwrap();
         let (mut samples, mut weights) = (Vec::new(), Vec::new());
         family.select(7, 0.9, &mut samples);
         family.weigh(7, &mut weights);
@@ -437,9 +437,9 @@ mod tests {
     fn a_partial_demand_leaves_out_samples_and_the_classes_without_any() {
         let flags: Vec<bool> =
             (0..EXTENT.sites()).map(|site| EXTENT.site(site).frame == 1 && site % 12 < 3).collect();
-        let whole = Family::new(&lattice(Form::LevelSets), EXTENT, Wanted::All).unwrap();
+        let whole = Family::new(&lattice(FilterForm::LevelSets), EXTENT, Wanted::All).unwrap();
         let part =
-            Family::new(&lattice(Form::LevelSets), EXTENT, Wanted::Some(flags.clone().into())).unwrap();
+            Family::new(&lattice(FilterForm::LevelSets), EXTENT, Wanted::Some(flags.clone().into())).unwrap();
         let (mut all, mut some, mut visited) = (Vec::new(), Vec::new(), Vec::new());
         part.list_visited(&mut visited);
         let mut selected = 0;

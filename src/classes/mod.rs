@@ -10,10 +10,11 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-pub use self::custom::{ClassFamily, CustomClasses, Member};
+pub use self::custom::{ClassFamily, ClassSamples, CustomClasses};
+pub use self::demand::Demand;
 pub(crate) use self::family::{Family, Wanted};
 pub use self::listed::{LabelSet, Ramp};
-pub use self::prefixes::{Lengths, PrefixLength, PrefixOf};
+pub use self::prefixes::{PrefixLength, PrefixLengths, PrefixOf};
 use crate::kernel::Kernel;
 
 /// A family of filters over the samples of a table (Salaün et al. 2022, Section 3).
@@ -29,7 +30,7 @@ pub enum Classes {
         /// The filter.
         kernel: Kernel,
         /// How its weights enter.
-        form: Form,
+        form: FilterForm,
     },
     /// One class: all samples alike. It is what makes a table unbiased.
     WholeTable,
@@ -57,7 +58,7 @@ pub enum Classes {
         /// What is to be cut short: the table, or the samples of each pixel.
         of: PrefixOf,
         /// Where.
-        lengths: Lengths,
+        lengths: PrefixLengths,
     },
     /// A family of the caller's own.
     Custom(CustomClasses),
@@ -79,7 +80,7 @@ impl Classes {
 /// How the weights of a filter enter the transport.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Form {
+pub enum FilterForm {
     /// Uniform level `z`, unweighted subset `{j : w_j > z}`: the objective of Salaün et al. 2022. Cheap.
     #[default]
     LevelSets,

@@ -17,10 +17,10 @@ pub enum PrefixOf {
     Pixel,
 }
 
-/// Lengths of the prefixes, in samples.
+/// PrefixLengths of the prefixes, in samples.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Lengths {
+pub enum PrefixLengths {
     /// All of them: 1, 2, 3, …. A step visits a random few.
     Every,
     /// 1, 2, 4, … and the whole.
@@ -29,7 +29,7 @@ pub enum Lengths {
     Given(Vec<PrefixLength>),
 }
 
-/// A prefix among [`Lengths::Given`].
+/// A prefix among [`PrefixLengths::Given`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PrefixLength {
     /// Samples, from 1 to all.
@@ -49,7 +49,7 @@ pub(crate) struct Prefixes {
 }
 
 impl Prefixes {
-    pub(crate) fn new(of: PrefixOf, lengths: &Lengths, extent: Extent) -> Result<Self, ConfigError> {
+    pub(crate) fn new(of: PrefixOf, lengths: &PrefixLengths, extent: Extent) -> Result<Self, ConfigError> {
         let block = match of {
             PrefixOf::Table => extent.samples(),
             PrefixOf::Pixel => extent.spp,
@@ -57,15 +57,15 @@ impl Prefixes {
         // The first samples are in all prefixes: the short ones decide about them, and the later samples follow.
         let weighed = |length: usize| PrefixLength { length, weight: 1.0 / length as f64 };
         let lengths = match lengths {
-            Lengths::Every => (1..=block).map(weighed).collect(),
-            Lengths::PowersOfTwo => {
+            PrefixLengths::Every => (1..=block).map(weighed).collect(),
+            PrefixLengths::PowersOfTwo => {
                 let powers = std::iter::successors(Some(1_usize), |length| length.checked_mul(2));
                 powers.take_while(|&length| length < block).chain([block]).map(weighed).collect()
             }
-            Lengths::Given(given) if given.is_empty() => {
+            PrefixLengths::Given(given) if given.is_empty() => {
                 return Err(ConfigError::NoClasses { family: "prefixes" });
             }
-            Lengths::Given(given) => given.clone(),
+            PrefixLengths::Given(given) => given.clone(),
         };
         for &PrefixLength { length, weight } in &lengths {
             if !(1..=block).contains(&length) {
@@ -131,12 +131,12 @@ mod tests {
     #[test]
     fn prefixes_of_pixels_start_at_each_pixel() {
         let extent = Extent { frames: 1, height: 1, width: 3, spp: 6 };
-        let prefixes = Prefixes::new(PrefixOf::Pixel, &Lengths::PowersOfTwo, extent).unwrap();
+        let prefixes = Prefixes::new(PrefixOf::Pixel, &PrefixLengths::PowersOfTwo, extent).unwrap();
         assert_eq!(prefixes.sizes(), [1, 2, 4, 6]);
         assert_eq!(prefixes.members(), 12);
         assert_eq!(prefixes.run(4), 6..7);
         assert_eq!(prefixes.run(11), 12..18);
-        let prefixes = Prefixes::new(PrefixOf::Table, &Lengths::Every, extent).unwrap();
+        let prefixes = Prefixes::new(PrefixOf::Table, &PrefixLengths::Every, extent).unwrap();
         assert_eq!(prefixes.members(), 18);
         assert_eq!(prefixes.run(16), 0..17);
     }
@@ -144,7 +144,7 @@ mod tests {
     #[test]
     fn a_class_is_marked_if_it_reaches_the_site() {
         let extent = Extent::points(8);
-        let prefixes = Prefixes::new(PrefixOf::Table, &Lengths::PowersOfTwo, extent).unwrap();
+        let prefixes = Prefixes::new(PrefixOf::Table, &PrefixLengths::PowersOfTwo, extent).unwrap();
         let mut holds = [false; 4];
         prefixes.mark(3, &mut holds);
         assert_eq!(holds, [false, false, true, true]);

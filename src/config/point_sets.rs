@@ -2,18 +2,18 @@
 
 use std::sync::Arc;
 
-use crate::classes::{Classes, LabelSet, Lengths, PrefixOf};
+use crate::classes::{Classes, LabelSet, PrefixLengths, PrefixOf};
+use crate::config::Config;
 use crate::config::term::{Role, Term};
-use crate::optimizer::Config;
-use crate::slices::walk::{Descent, Schedule};
+use crate::config::{Descent, Schedule};
 use crate::table::extent::Extent;
-#[cfg(feature = "render")]
+#[cfg(feature = "image")]
 use crate::targets::Inks;
 use crate::targets::{Density, Target};
 
 /// Which sets of labels are classes of their own.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Subsets {
+pub enum LabelSubsets {
     /// Each label, and all of them together.
     EachAndAll,
     /// Every set of labels but the empty one: 3 classes for two labels, 7 for three, 15 for four. Beyond 12 labels that
@@ -23,14 +23,14 @@ pub enum Subsets {
     Given(Vec<Vec<u32>>),
 }
 
-impl Subsets {
+impl LabelSubsets {
     /// The sets for labels from 0 to `labels - 1`, each once.
     fn list(&self, labels: usize) -> Vec<Vec<u32>> {
         let all = || (0..labels as u32).collect::<Vec<_>>();
         match self {
-            Subsets::Given(given) => given.clone(),
-            Subsets::EachAndAll if labels == 1 => vec![all()],
-            _ if *self == Subsets::EachAndAll || labels > MOST_LABELS => {
+            LabelSubsets::Given(given) => given.clone(),
+            LabelSubsets::EachAndAll if labels == 1 => vec![all()],
+            _ if *self == LabelSubsets::EachAndAll || labels > MOST_LABELS => {
                 all().into_iter().map(|label| vec![label]).chain([all()]).collect()
             }
             _ => {
@@ -57,8 +57,8 @@ impl Config {
     /// A set of `counts.len()` classes: `counts[0]` points labelled 0, then `counts[1]` labelled 1, …; each of the
     /// `subsets` of labels is to be uniform by itself.
     ///
-    /// Two labels of 512 points: `Config::classes(&[512, 512], 2, &Subsets::EachAndAll)`.
-    pub fn classes(counts: &[usize], dims: usize, subsets: &Subsets) -> Self {
+    /// Two labels of 512 points: `Config::classes(&[512, 512], 2, &LabelSubsets::EachAndAll)`.
+    pub fn classes(counts: &[usize], dims: usize, subsets: &LabelSubsets) -> Self {
         let labels = labels(counts);
         let size = |set: &Vec<u32>| -> f64 {
             let count = |label: &u32| counts.get(*label as usize).copied().unwrap_or(0) as f64;
@@ -79,12 +79,12 @@ impl Config {
     /// in this order. Each ink, and each of the up to 15 sets of inks, is to look like its part of the picture.
     ///
     /// [`Inks::counts`] says how many points each ink has.
-    #[cfg(feature = "render")]
+    #[cfg(feature = "image")]
     pub fn color_stippling(count: usize, picture: &Inks) -> Self {
         let counts = picture.counts(count);
         let labels = labels(&counts);
         let mut terms = Vec::new();
-        for set in Subsets::Every.list(counts.len()) {
+        for set in LabelSubsets::Every.list(counts.len()) {
             let size: usize = set.iter().map(|&ink| counts[ink as usize]).sum();
             // A set that holds an ink without points is the same as the set without it.
             if set.iter().any(|&ink| counts[ink as usize] == 0) {
@@ -102,7 +102,7 @@ impl Config {
     /// A progressive sequence: the first 1, 2, 4, … points are uniform, and so are as many as `lengths` says.
     ///
     /// In two and more dimensions each coordinate alone is uniform as well, with a smaller weight.
-    pub fn progressive(count: usize, dims: usize, lengths: Lengths) -> Self {
+    pub fn progressive(count: usize, dims: usize, lengths: PrefixLengths) -> Self {
         let classes = Classes::Prefixes { of: PrefixOf::Table, lengths };
         let mut terms = vec![whole(classes.clone(), Target::UniformCube, dims)];
         if dims > 1 {

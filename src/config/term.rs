@@ -2,10 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::classes::Classes;
+use crate::classes::{Classes, FilterForm};
 use crate::error::ConfigError;
+use crate::kernel::Kernel;
 use crate::simd::LANES;
-use crate::table::extent::MOST_DIMS;
+use crate::table::extent::{Extent, MOST_DIMS};
 use crate::targets::Target;
 
 /// Most slices of a step.
@@ -61,6 +62,41 @@ impl DimensionGroup {
             groups.push(Self { dims: all, weight: 0.5 });
         }
         groups
+    }
+}
+
+/// Share of the work that goes to the whole table, and to its frames, relative to the kernels.
+const BALANCE_WEIGHT: f64 = 0.03;
+
+impl Term {
+    /// The terms for blue-noise error: each group under each kernel, and as much of the whole table and of each
+    /// frame as keeps them unbiased.
+    pub fn blue_noise(
+        kernels: &[Kernel],
+        form: FilterForm,
+        groups: &[DimensionGroup],
+        extent: &Extent,
+    ) -> Vec<Self> {
+        let mut terms = Vec::new();
+        let mut add = |classes: Classes, role: Role, share: f64| {
+            for group in groups {
+                terms.push(Self {
+                    classes: classes.clone(),
+                    target: Target::UniformCube,
+                    dims: group.dims.clone(),
+                    weight: share * group.weight,
+                    role,
+                });
+            }
+        };
+        for kernel in kernels {
+            add(Classes::Lattice { kernel: kernel.clone(), form }, Role::Descend, 1.0 / kernels.len() as f64);
+        }
+        add(Classes::WholeTable, Role::Balance, BALANCE_WEIGHT);
+        if extent.frames > 1 {
+            add(Classes::PerFrame, Role::Balance, BALANCE_WEIGHT);
+        }
+        terms
     }
 }
 

@@ -10,15 +10,9 @@
 //! for subsets of up to 4096 samples (4e-9 up to 97 samples), and by more than 4.2e-7 for 40,000; the f32 around it rounds by
 //! 1e-7. The tests below print the worst of each.
 
-use std::sync::Arc;
-
-use nalgebra::DMatrix;
-use rand::{Rng, RngExt};
-use rand_distr::StandardNormal;
 use rayon::prelude::*;
 
-use crate::directions::target_bank::Atlas;
-use crate::error::ConfigError;
+use super::frames::random_frame;
 use crate::random::{self, Purpose};
 use crate::simd::{LANES, Row};
 use crate::targets::Target;
@@ -27,42 +21,6 @@ use crate::targets::Target;
 #[derive(Clone, Debug)]
 pub(crate) struct Bank {
     blocks: Vec<Block>,
-}
-
-/// Banks and atlases that the terms of an objective share.
-#[derive(Debug, Default)]
-pub(crate) struct Banks {
-    made: Vec<(usize, Target, Arc<Bank>)>,
-    atlases: Vec<(usize, Target, Arc<Atlas>)>,
-}
-
-impl Banks {
-    /// The bank for `dims ≥ 3` dimensions, made at its first use.
-    pub(crate) fn bank(&mut self, dims: usize, target: &Target) -> Arc<Bank> {
-        match self.made.iter().find(|made| (made.0, &made.1) == (dims, target)) {
-            Some((_, _, bank)) => bank.clone(),
-            None => {
-                let bank = Arc::new(Bank::new(dims, target));
-                self.made.push((dims, target.clone(), bank.clone()));
-                bank
-            }
-        }
-    }
-
-    /// The atlas of a target that is not the cube, made at its first use, by term `index`.
-    pub(crate) fn atlas(
-        &mut self,
-        index: usize,
-        dims: usize,
-        target: &Target,
-    ) -> Result<Arc<Atlas>, ConfigError> {
-        if let Some((_, _, atlas)) = self.atlases.iter().find(|made| (made.0, &made.1) == (dims, target)) {
-            return Ok(atlas.clone());
-        }
-        let atlas = Arc::new(Atlas::new(index, dims, target)?);
-        self.atlases.push((dims, target.clone(), atlas.clone()));
-        Ok(atlas)
-    }
 }
 
 /// As many directions as there are lanes.
@@ -101,13 +59,6 @@ impl Bank {
     pub(crate) fn len(&self) -> usize {
         self.blocks.len()
     }
-}
-
-/// A random orthonormal frame: the orthonormal factor of a Gaussian matrix, uniform up to signs.
-pub(crate) fn random_frame(dims: usize, generator: &mut impl Rng) -> Vec<Vec<f64>> {
-    let gaussian = DMatrix::from_fn(dims, dims, |_, _| generator.sample(StandardNormal));
-    let frame: DMatrix<f64> = gaussian.qr().q();
-    frame.column_iter().map(|column| column.iter().copied().collect()).collect()
 }
 
 impl Block {

@@ -1,17 +1,18 @@
 //! Slicing directions of a dimension group, drawn for one subset at a time.
 
+pub(crate) mod banks;
 pub(crate) mod cube_bank;
+pub(crate) mod frames;
 pub(crate) mod target_bank;
 
 use std::sync::Arc;
 
 use rand::{Rng, RngExt};
-use rand_distr::StandardNormal;
 
-use crate::directions::cube_bank::{Bank, Banks};
-use crate::directions::target_bank::Atlas;
+use self::banks::Banks;
+use self::cube_bank::Bank;
+use self::target_bank::Atlas;
 use crate::error::ConfigError;
-use crate::random::{self, Purpose};
 use crate::simd::{LANES, Row};
 use crate::targets::Target;
 
@@ -33,23 +34,6 @@ pub(crate) struct Slicer {
     /// Cosine and sine of evenly spaced angles, turned as one for each subset. Where their number is even, the second
     /// half of them are the first turned by a right angle, and not listed.
     fan: Vec<[f64; 2]>,
-}
-
-/// The `index`th of `count` directions that are spread evenly: over the half circle in the plane, at random in more
-/// dimensions.
-pub(crate) fn spread(dims: usize, index: usize, count: usize) -> Vec<f64> {
-    if dims == 1 {
-        return vec![1.0];
-    }
-    if dims == 2 {
-        let angle = std::f64::consts::PI * (index as f64 + 0.5) / count as f64;
-        let (sin, cos) = libm::sincos(angle);
-        return vec![cos, sin];
-    }
-    let mut generator = random::generator(0, Purpose::Frames, dims as u64, 1 << 32 | index as u64);
-    let gaussian: Vec<f64> = (0..dims).map(|_| generator.sample(StandardNormal)).collect();
-    let length = gaussian.iter().map(|component| component * component).sum::<f64>().sqrt();
-    gaussian.iter().map(|component| component / length.max(f64::MIN_POSITIVE)).collect()
 }
 
 /// Directions of one subset: lanes `0..count` are unit vectors, the others zero.

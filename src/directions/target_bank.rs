@@ -5,10 +5,9 @@
 
 use rayon::prelude::*;
 
-use crate::directions::spread;
+use super::frames::{frames, spread};
 use crate::error::ConfigError;
 use crate::laws::Pieces;
-use crate::random::{self, Purpose};
 use crate::simd::LANES;
 use crate::targets::Target;
 
@@ -87,15 +86,4 @@ impl Atlas {
             _ => (phase * (self.len() / LANES) as f64) as usize % (self.len() / LANES) * LANES + lane,
         }
     }
-}
-
-/// Rows of random orthonormal frames, one frame after the other.
-fn frames(dims: usize, count: usize) -> Vec<Vec<f64>> {
-    let mut rows: Vec<Vec<f64>> = Vec::with_capacity(count + dims);
-    for index in 0..count.div_ceil(dims) {
-        let mut generator = random::generator(0, Purpose::Frames, dims as u64, 1 << 33 | index as u64);
-        rows.extend(crate::directions::cube_bank::random_frame(dims, &mut generator));
-    }
-    rows.truncate(count);
-    rows
 }

@@ -32,7 +32,7 @@ pub struct Metadata {
     pub crate_version: String,
     /// Names of the axes, slowest first: `frame`, `y`, `x`, `sample`, `dim`.
     pub axes: [String; 5],
-    /// Lengths of the axes.
+    /// PrefixLengths of the axes.
     pub shape: [usize; 5],
     /// Type of the values, as numpy names it: `<f4`, little-endian `f32`.
     pub dtype: String,

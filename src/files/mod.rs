@@ -2,4 +2,8 @@
 
 pub(crate) mod metadata;
 pub(crate) mod npy;
-pub(crate) mod whole;
+mod whole;
+
+pub use self::metadata::{BoundEstimate, BoundRecord, KernelTaps, Metadata, RunRecord};
+pub use self::whole::{Replaced, WholeFile};
+pub use crate::error::{FormatError, TableError};

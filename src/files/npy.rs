@@ -14,8 +14,8 @@ use std::path::Path;
 use ndarray_npy::npy::header::{Header, Layout, ParseHeaderError, ReadHeaderError, WriteHeaderError};
 
 use crate::error::{FormatError, TableError};
+use crate::files::WholeFile;
 use crate::files::metadata::{self, Metadata};
-use crate::files::whole::Pending;
 use crate::table::SampleTable;
 use crate::table::extent::Extent;
 
@@ -40,7 +40,7 @@ impl SampleTable {
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), TableError> {
         let path = path.as_ref();
         metadata::check_name(path)?;
-        self.pending(path).and_then(Pending::commit).map_err(|error| cannot_write(path, error))
+        self.pending(path).and_then(WholeFile::commit).map_err(|error| cannot_write(path, error))
     }
 
     /// Writes the table as `.npy` and its metadata as `.json` beside it ([`Metadata::path_beside`]). Both files
@@ -59,7 +59,7 @@ impl SampleTable {
             .check_format()
             .and_then(|()| metadata.check_shape(self.shape()))
             .map_err(|problem| TableError::Format { path: beside.clone(), problem })?;
-        let json = Pending::write(&beside, |out| {
+        let json = WholeFile::write(&beside, |out| {
             serde_json::to_writer_pretty(&mut *out, metadata)?;
             out.write_all(b"\n")
         })
@@ -110,14 +110,14 @@ impl SampleTable {
         let path = path.as_ref();
         metadata::check_name(path)?;
         for file in [path, &Metadata::path_beside(path)] {
-            Pending::write(file, |_| Ok(())).map_err(|error| cannot_write(file, error))?;
+            WholeFile::write(file, |_| Ok(())).map_err(|error| cannot_write(file, error))?;
         }
         Ok(())
     }
 
     /// Writes header and values beside `path`.
-    fn pending(&self, path: &Path) -> io::Result<Pending> {
-        Pending::write(path, |out| {
+    fn pending(&self, path: &Path) -> io::Result<WholeFile> {
+        WholeFile::write(path, |out| {
             // The header is made here, and not by `WriteNpyExt`, because that writes the machine's byte order.
             let type_descriptor = "'<f4'".parse().map_err(io::Error::other)?;
             let shape = self.shape().to_vec();

@@ -9,20 +9,20 @@ use tempfile::TempPath;
 /// A file that is complete on the disk, but still has a temporary name beside its target.
 ///
 /// Dropping it removes it and leaves the target as it was.
-pub(crate) struct Pending {
+pub struct WholeFile {
     file: TempPath,
     target: PathBuf,
 }
 
 /// What a renamed file has replaced.
-pub(crate) struct Replaced {
+pub struct Replaced {
     target: PathBuf,
     previous: Option<Vec<u8>>,
 }
 
-impl Pending {
+impl WholeFile {
     /// Writes the contents beside `path` and waits until they have reached the disk.
-    pub(crate) fn write(
+    pub fn write(
         path: &Path,
         fill: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>,
     ) -> io::Result<Self> {
@@ -47,12 +47,12 @@ impl Pending {
     }
 
     /// Takes the target's name.
-    pub(crate) fn commit(self) -> io::Result<()> {
+    pub fn commit(self) -> io::Result<()> {
         self.file.persist(&self.target).map_err(|failed| failed.error)
     }
 
     /// Takes the target's name and remembers what was there; for small files.
-    pub(crate) fn replace(self) -> io::Result<Replaced> {
+    pub fn replace(self) -> io::Result<Replaced> {
         let previous = match fs::read(&self.target) {
             Ok(bytes) => Some(bytes),
             Err(absent) if absent.kind() == io::ErrorKind::NotFound => None,
@@ -66,11 +66,11 @@ impl Pending {
 
 impl Replaced {
     /// Puts back what was there, as far as possible: the caller is already reporting why.
-    pub(crate) fn undo(self) {
+    pub fn undo(self) {
         let _ = match self.previous {
             None => fs::remove_file(&self.target),
             Some(bytes) => {
-                Pending::write(&self.target, |out| out.write_all(&bytes)).and_then(Pending::commit)
+                WholeFile::write(&self.target, |out| out.write_all(&bytes)).and_then(WholeFile::commit)
             }
         };
     }
@@ -112,8 +112,8 @@ fn directory(path: &Path) -> &Path {
 mod tests {
     use super::*;
 
-    fn pending(path: &Path, text: &str) -> Pending {
-        Pending::write(path, |out| out.write_all(text.as_bytes())).unwrap()
+    fn pending(path: &Path, text: &str) -> WholeFile {
+        WholeFile::write(path, |out| out.write_all(text.as_bytes())).unwrap()
     }
 
     fn names(directory: &Path) -> Vec<String> {
@@ -141,7 +141,7 @@ mod tests {
             out.write_all(b"half")?;
             Err(io::Error::from(io::ErrorKind::StorageFull))
         };
-        assert_eq!(Pending::write(&path, full).err().unwrap().kind(), io::ErrorKind::StorageFull);
+        assert_eq!(WholeFile::write(&path, full).err().unwrap().kind(), io::ErrorKind::StorageFull);
         assert!(names(home.path()).is_empty());
 
         // The target turns into a directory between the check and the rename.
@@ -175,7 +175,7 @@ mod tests {
         pending(&link, "new").commit().unwrap();
         assert!(link.is_symlink());
         assert_eq!(fs::read_to_string(&file).unwrap(), "new");
-        let refused = Pending::write(Path::new("/dev/null"), |_| Ok(())).err().unwrap();
+        let refused = WholeFile::write(Path::new("/dev/null"), |_| Ok(())).err().unwrap();
         assert_eq!(refused.kind(), io::ErrorKind::InvalidInput);
     }
 }

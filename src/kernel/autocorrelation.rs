@@ -6,7 +6,7 @@ use crate::table::extent::Extent;
 /// `F(c) = Σ_p w(p) w(p + c)` at the offsets where it exceeds `truncation` times its largest value, row by row.
 ///
 /// Offsets are folded to at most half the extent either way. O(taps²), and memory for one number per site.
-pub(crate) fn autocorrelation(taps: &[Tap], extent: &Extent, truncation: f64) -> Vec<Tap> {
+pub fn autocorrelation(taps: &[Tap], extent: &Extent, truncation: f64) -> Vec<Tap> {
     let [frames, height, width] = [extent.frames, extent.height, extent.width].map(|len| len as i32);
     let mut sums = vec![0.0; extent.sites()];
     for a in taps {

@@ -5,7 +5,9 @@
 //! the other convention, `exp(-r² / (2 s²))` (Wolfe et al. 2022; Donnelly et al. 2024). Temporal kernels weight
 //! the current and *past* frames. Weights are relative: only their ratios matter.
 
-pub(crate) mod autocorrelation;
+mod autocorrelation;
+
+pub use self::autocorrelation::autocorrelation;
 
 use std::collections::BTreeMap;
 

@@ -75,7 +75,7 @@ impl Moments {
         // As many touches as the smallest family needs for its slices, in a large one too.
         let least = objective.terms.iter().map(|term| term.family.mean_size()).fold(f64::INFINITY, f64::min);
         let slices = (slices as f64 * least / family.mean_size()).ceil() as usize;
-        // Subsets of a direction are different ones: a family of a few large classes has one each.
+        // LabelSubsets of a direction are different ones: a family of a few large classes has one each.
         let per_direction = if family.visited() < DIRECTIONS * CLUSTER { 1 } else { CLUSTER };
         let clusters = slices.div_ceil(per_direction).max(DIRECTIONS);
         let pairs: Vec<(f64, f64)> = (0..clusters)

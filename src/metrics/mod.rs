@@ -28,8 +28,6 @@ mod families;
 mod fft;
 mod filtered_error;
 mod integrands;
-#[cfg(feature = "render")]
-mod picture;
 mod ratios;
 mod set_error;
 mod sliced;
@@ -45,8 +43,6 @@ pub use error_image::error_image;
 pub use families::{Family, Integrands};
 pub use filtered_error::{FilteredError, filtered_error};
 pub use integrands::Integrand;
-#[cfg(feature = "render")]
-pub use picture::{gray, write_gray_png, write_radial_csv};
 pub use ratios::{Estimate, Ratios};
 pub use set_error::set_error;
 pub use sliced::sliced_w2;

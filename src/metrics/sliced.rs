@@ -40,7 +40,7 @@ pub fn sliced_w2(
         return Err(ConfigError::BadPoint { index, value: points[index] });
     }
     let squared = (0..directions).into_par_iter().map(|index| {
-        let direction = crate::directions::spread(dims, index, directions);
+        let direction = crate::directions::frames::spread(dims, index, directions);
         let direction: Vec<f64> =
             direction.iter().zip(target.scales(dims)).map(|(component, scale)| component * scale).collect();
         let along = |point: &[f64]| point.iter().zip(&direction).map(|(x, theta)| x * theta).sum();

@@ -5,18 +5,18 @@ pub(crate) mod plan;
 use rayon::prelude::*;
 
 use crate::classes::demand::Demand;
-use crate::classes::{Classes, Form, Wanted};
-use crate::config::term::{DimensionGroup, Role, Slicing, Term};
-use crate::directions::cube_bank::Banks;
+use crate::classes::{Classes, Wanted};
+use crate::config::term::{Role, Slicing, Term};
+use crate::directions::banks::Banks;
 use crate::error::ConfigError;
-use crate::kernel::{Kernel, Tap};
+use crate::kernel::Tap;
 use crate::laws::distance::Workspace;
 use crate::objective::plan::{PlannedTerm, classes, share_work};
+use crate::random::kronecker_steps;
 use crate::sweeps;
 use crate::table::SampleTable;
 use crate::table::domain::Domain;
 use crate::table::extent::Extent;
-use crate::targets::{Target, kronecker_steps};
 
 /// One random draw of the objective: a class, a level, a direction.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,9 +46,6 @@ pub struct Objective {
     pub(crate) terms: Vec<PlannedTerm>,
     pub(crate) wanted: Wanted,
 }
-
-/// Share of the work that goes to the whole table, and to its frames, relative to the kernels.
-const BALANCE_WEIGHT: f64 = 0.03;
 
 impl Objective {
     /// Checks and plans the terms.
@@ -143,36 +140,6 @@ impl Objective {
         }
         share_work(&mut planned, extent, slicing);
         Ok(Self { extent, dims, domains: domains.to_vec(), terms: planned, wanted })
-    }
-
-    /// The terms for blue-noise error: each group under each kernel, and as much of the whole table and of each
-    /// frame as keeps them unbiased.
-    pub fn blue_noise(
-        kernels: &[Kernel],
-        form: Form,
-        groups: &[DimensionGroup],
-        extent: &Extent,
-    ) -> Vec<Term> {
-        let mut terms = Vec::new();
-        let mut add = |classes: Classes, role: Role, share: f64| {
-            for group in groups {
-                terms.push(Term {
-                    classes: classes.clone(),
-                    target: Target::UniformCube,
-                    dims: group.dims.clone(),
-                    weight: share * group.weight,
-                    role,
-                });
-            }
-        };
-        for kernel in kernels {
-            add(Classes::Lattice { kernel: kernel.clone(), form }, Role::Descend, 1.0 / kernels.len() as f64);
-        }
-        add(Classes::WholeTable, Role::Balance, BALANCE_WEIGHT);
-        if extent.frames > 1 {
-            add(Classes::PerFrame, Role::Balance, BALANCE_WEIGHT);
-        }
-        terms
     }
 
     /// Frames, height, width and samples per pixel of the tables that this objective is planned for.

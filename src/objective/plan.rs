@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::classes::{Family, Wanted};
 use crate::config::term::{Role, Slicing, Term};
 use crate::directions::Slicer;
-use crate::directions::cube_bank::{Banks, Boundary};
+use crate::directions::banks::Banks;
+use crate::directions::cube_bank::Boundary;
 use crate::error::ConfigError;
 use crate::table::domain::Domain;
 use crate::table::extent::Extent;
@@ -28,7 +29,7 @@ pub(crate) struct PlannedTerm {
     /// Per dimension, the square of the unit of distances along the slices in that of the coordinates; 1 but for pictures
     /// that are not square.
     pub stretch: Vec<f32>,
-    /// Subsets drawn per step; need not be whole.
+    /// LabelSubsets drawn per step; need not be whole.
     pub rate: f64,
     /// Whether every step draws as many, so that a class sees its directions in even steps.
     pub steady: bool,
@@ -132,7 +133,7 @@ impl PlannedTerm {
     /// Draws some slices of every class, or of [`VISITS`] of them, in each step.
     fn visit_steadily(&mut self, directions: usize) {
         let levels = if self.family.has_levels() { LEVELS } else { 1 };
-        // Subsets that don't share directions come once for each.
+        // LabelSubsets that don't share directions come once for each.
         let alone = self.slicer.per_subset() == 1 && self.spec.dims.len() > 1;
         let turns = if alone { directions } else { 1 };
         self.steady = true;

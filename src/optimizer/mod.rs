@@ -1,78 +1,24 @@
-//! The optimiser: a configuration, a table on its way, steps and runs.
+//! The optimiser: a table on its way, steps and runs.
 
 pub(crate) mod report;
 
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-use serde::{Deserialize, Serialize};
-
-use crate::classes::Form;
 use crate::classes::demand::Demand;
-use crate::config::term::{DimensionGroup, Role, Slicing, Term};
+use crate::config::Config;
+use crate::config::term::Role;
+use crate::config::until::{EndReason, Until, Work};
 use crate::error::ConfigError;
-use crate::kernel::{Kernel, SpatialKernel, TemporalKernel};
 use crate::objective::Objective;
-use crate::optimizer::report::{Ended, Plateau, RunReport, StepReport, Until, Work};
+use crate::optimizer::report::{Plateau, RunReport, StepReport};
 use crate::slices::Engine;
 use crate::slices::draw::Pick;
 use crate::slices::part::Part;
 use crate::slices::pull::Pull;
-use crate::slices::walk::{self, Descent, Schedule, Walker};
-use crate::sweeps::{self, MeanSquare, Sweeper, Sweeps};
+use crate::slices::walk::{self, Walker};
+use crate::sweeps::{self, MeanSquare, Sweeper};
 use crate::table::SampleTable;
-use crate::table::domain::Domain;
-use crate::table::extent::{Extent, MOST_DIMS};
-
-/// Everything that determines a table, but for the length of the run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Config {
-    /// Frames, height, width and samples per pixel.
-    pub extent: Extent,
-    /// Dimensions of a sample.
-    pub dims: usize,
-    /// Interval or torus, per dimension.
-    pub domains: Vec<Domain>,
-    /// What is optimised.
-    pub terms: Vec<Term>,
-    /// How slices are drawn.
-    pub slicing: Slicing,
-    /// How steps of slices move the samples.
-    pub descent: Descent,
-    /// How sweeps move them.
-    #[serde(default)]
-    pub sweeps: Sweeps,
-    /// How far the terms in the role of [`Role::Balance`] move the samples towards their targets, over a run.
-    pub balance: Schedule,
-    /// Names every random number: the same seed gives the same bits.
-    pub seed: u64,
-}
-
-impl Config {
-    /// The defaults for a table of this extent: interval domains, the spatial Gaussian of the papers (`sigma_px =
-    /// 2.1`), times the perceptual kernel at 60 frames per second if there are several frames, consecutive pairs of
-    /// dimensions and all of them at half their weight, unbiased, barycentric steps of slices.
-    pub fn new(extent: Extent, dims: usize) -> Self {
-        let temporal = match extent.frames {
-            0 | 1 => TemporalKernel::None,
-            _ => TemporalKernel::Perceptual { fps: 60.0 },
-        };
-        let kernel = Kernel::product(SpatialKernel::Gaussian { sigma_px: 2.1 }, temporal);
-        let groups = DimensionGroup::pairs_and_whole(dims);
-        Self {
-            extent,
-            dims,
-            // More dimensions are refused when the configuration is used; a list of them might not fit the memory.
-            domains: vec![Domain::Interval; dims.min(MOST_DIMS)],
-            terms: Objective::blue_noise(&[kernel], Form::LevelSets, &groups, &extent),
-            slicing: Slicing::default(),
-            descent: Descent::default(),
-            sweeps: Sweeps::default(),
-            balance: Schedule::constant(1.0),
-            seed: 0,
-        }
-    }
-}
 
 /// Optimises a table of white noise, or a given one.
 pub struct Optimizer {
@@ -229,7 +175,7 @@ impl Optimizer {
         }
     }
 
-    /// Sweeps once over all samples: each moves `rate` times (at most as far as settles, see [`Sweeps`]) along the gradient of
+    /// Sweeps once over all samples: each moves `rate` times (at most as far as settles, see [`Sweeps`](crate::config::Sweeps)) along the gradient of
     /// the objective over all slices at once ([`Objective::cramer`]). Half-way and at its end one slice of every class in the role of [`Role::Balance`] moves them
     /// `balance` of the way.
     /// Returns the root mean square pull on a coordinate.
@@ -320,7 +266,7 @@ impl Optimizer {
         let begin = Instant::now();
         let mut plateau = Plateau::default();
         let mut report =
-            RunReport { ended: Ended::Finished, steps: 0, slices: 0, work, elapsed: Duration::ZERO };
+            RunReport { ended: EndReason::Finished, steps: 0, slices: 0, work, elapsed: Duration::ZERO };
         for step in 0..steps {
             let (displacement, rate) = if step < batches {
                 let progress = step as f64 / batches as f64;
@@ -343,17 +289,17 @@ impl Optimizer {
             let seen =
                 StepReport { step: step + 1, steps, slices: report.slices, displacement, rate, elapsed };
             if observe(&seen).is_break() {
-                report.ended = Ended::Stopped;
+                report.ended = EndReason::Stopped;
                 break;
             }
             if let Until::Converged { improvement, window_steps, .. } = until
                 && plateau.reached(displacement * displacement, improvement, window_steps)
             {
-                report.ended = Ended::Converged;
+                report.ended = EndReason::Converged;
                 break;
             }
         }
-        if work.sweeps > 0 && report.ended == Ended::Finished {
+        if work.sweeps > 0 && report.ended == EndReason::Finished {
             self.settle(work.sweeps, self.config.balance.at(1.0));
         }
         if let Some(sweeper) = &mut self.sweeper {

@@ -1,48 +1,8 @@
-//! Runs: how long they are, what they tell on the way, how they ended.
+//! What a run tells its caller on the way and at its end.
 
 use std::time::Duration;
 
-use serde::{Deserialize, Serialize};
-
-/// When a run ends.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Until {
-    /// After this many slices per pixel and frame, or per class of a point set (rounded up to whole steps).
-    SlicesPerClass(u64),
-    /// After this many epochs, of `directions` slices per pixel and frame each.
-    Epochs(u64),
-    /// After this many sweeps.
-    Sweeps(u64),
-    /// Slices first, then sweeps.
-    Work(Work),
-    /// After about this many seconds, in the sequence that gets furthest by then: sweeps where the objective has its
-    /// closed form, after slices if there is time for both; slices elsewhere. A brief calibration fixes how much work fits,
-    /// schedules follow it, and [`RunReport::work`] makes the very same table again, anywhere.
-    Seconds(f64),
-    /// As soon as the mean squared displacement falls by less than the share `improvement` from one window to the
-    /// next, and at the latest after `at_most` slices per pixel and frame, the number that schedules follow.
-    Converged {
-        /// Least relative improvement worth going on for, in `[0, 1)`.
-        improvement: f64,
-        /// Length of a window, in steps.
-        window_steps: u64,
-        /// Slices per pixel and frame.
-        at_most: u64,
-    },
-}
-
-/// An amount of work: slices come first, then sweeps.
-///
-/// Slices hold any class and target, and reach the lower bound; sweeps ([`Optimizer::sweep`](crate::Optimizer::sweep))
-/// take the whole of the objective's directions into account at once, and are the sooner at a low error.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Work {
-    /// Slices per pixel and frame (rounded up to whole steps).
-    pub slices_per_class: u64,
-    /// Sweeps over all samples.
-    pub sweeps: u64,
-}
+use crate::config::until::{EndReason, Work};
 
 /// What a run tells its caller after each step: a batch of slices, or a sixteenth of a sweep.
 #[derive(Clone, Copy, Debug)]
@@ -63,28 +23,16 @@ pub struct StepReport {
     pub elapsed: Duration,
 }
 
-/// How a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Ended {
-    /// All planned steps were taken.
-    Finished,
-    /// The rule of [`Until::Converged`] held.
-    Converged,
-    /// The caller's closure broke it off.
-    Stopped,
-}
-
 /// What a run did.
 #[derive(Clone, Copy, Debug)]
 pub struct RunReport {
     /// Why it ended.
-    pub ended: Ended,
+    pub ended: EndReason,
     /// Steps taken.
     pub steps: u64,
     /// Slices drawn, over all terms.
     pub slices: u64,
-    /// What the run was planned for. As [`Until::Work`] it gives the same steps.
+    /// What the run was planned for. As [`Until::Work`](crate::Until::Work) it gives the same steps.
     pub work: Work,
     /// Time of the steps, without calibration.
     pub elapsed: Duration,

@@ -3,8 +3,8 @@
 use pulp::Simd;
 
 use super::*;
+use crate::config::Config;
 use crate::config::term::Slicing;
-use crate::optimizer::Config;
 use crate::random;
 use crate::table::domain::Domain;
 use crate::table::extent::Extent;

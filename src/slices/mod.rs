@@ -24,7 +24,7 @@ use crate::slices::part::Part;
 use crate::slices::pull::Pull;
 use crate::transport::line;
 
-/// Subsets per chunk: large enough to pay for handing it to a thread.
+/// LabelSubsets per chunk: large enough to pay for handing it to a thread.
 const CHUNK: usize = 8;
 /// A step of few subsets is still shared between threads.
 const FEWEST_CHUNKS: usize = 8;
@@ -91,7 +91,7 @@ impl Batch {
         }
     }
 
-    /// Subsets per chunk and chunks in flight: fewer large subsets at a time, so that memory is bounded by samples and not
+    /// LabelSubsets per chunk and chunks in flight: fewer large subsets at a time, so that memory is bounded by samples and not
     /// by slices times samples.
     fn sizes(&self, objective: &Objective, role: Role, most_touches: usize) -> (usize, usize) {
         let terms = objective.terms.iter().filter(|term| term.spec.role == role && !is_large(term));

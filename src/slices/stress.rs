@@ -11,7 +11,7 @@ use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use rand::RngExt;
 
 use super::*;
-use crate::classes::{Classes, Form};
+use crate::classes::{Classes, FilterForm};
 use crate::config::term::{Slicing, Term};
 use crate::kernel::{Kernel, SpatialKernel, TemporalKernel};
 use crate::objective::Slice;
@@ -22,7 +22,7 @@ use crate::targets::Target;
 
 #[derive(Clone, Copy, Debug)]
 enum Filter {
-    Lattice { sigma_px: f64, alpha: f64, form: Form },
+    Lattice { sigma_px: f64, alpha: f64, form: FilterForm },
     WholeTable,
     PerFrame,
     PerPixel,
@@ -57,10 +57,10 @@ struct Case {
 fn cases() -> impl Strategy<Value = Case> {
     let filter = prop_oneof![
         5 => (0.3..4.0_f64, 0.2..=1.0_f64).prop_map(|(sigma_px, alpha)| {
-            Filter::Lattice { sigma_px, alpha, form: Form::LevelSets }
+            Filter::Lattice { sigma_px, alpha, form: FilterForm::LevelSets }
         }),
         2 => (0.3..3.0_f64, 0.2..=1.0_f64).prop_map(|(sigma_px, alpha)| {
-            Filter::Lattice { sigma_px, alpha, form: Form::Weighted }
+            Filter::Lattice { sigma_px, alpha, form: FilterForm::Weighted }
         }),
         1 => Just(Filter::WholeTable),
         1 => Just(Filter::PerFrame),
@@ -244,9 +244,9 @@ fn a_thousand_configurations_agree_with_the_twin() {
 fn large_subsets_agree_with_the_twin() {
     let lattice = |sigma_px, form| Filter::Lattice { sigma_px, alpha: 1.0, form };
     for (name, side, filter, dims) in [
-        ("one tap", 64, lattice(0.01, Form::LevelSets), 2),
-        ("4096 taps", 64, lattice(1000.0, Form::LevelSets), 2),
-        ("4096 weighted taps", 64, lattice(1000.0, Form::Weighted), 2),
+        ("one tap", 64, lattice(0.01, FilterForm::LevelSets), 2),
+        ("4096 taps", 64, lattice(1000.0, FilterForm::LevelSets), 2),
+        ("4096 weighted taps", 64, lattice(1000.0, FilterForm::Weighted), 2),
         ("1024 samples in 16 dimensions", 32, Filter::WholeTable, 16),
         ("10⁵ samples in 16 dimensions", 316, Filter::WholeTable, 16),
         ("10⁶ samples", 1000, Filter::WholeTable, 2),

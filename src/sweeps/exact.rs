@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::field::MeanDistance;
 use super::mean_projection;
 use crate::config::term::Role;
-use crate::kernel::autocorrelation::autocorrelation;
+use crate::kernel::autocorrelation;
 use crate::objective::Objective;
 use crate::objective::plan::PlannedTerm;
 

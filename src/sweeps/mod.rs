@@ -21,7 +21,6 @@ mod planes;
 mod sweeper;
 
 pub(crate) use exact::value_and_gradient;
-pub use sweeper::Sweeps;
 pub(crate) use sweeper::{MeanSquare, STEPS, Sweeper};
 
 use crate::config::term::Role;

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::field::FieldTable;
 use super::planes::{Planes, Run};
-use crate::kernel::autocorrelation::autocorrelation;
+use crate::kernel::autocorrelation;
 use crate::objective::plan::PlannedTerm;
 use crate::simd::{LANES, Row};
 use crate::table::extent::{Extent, MOST_DIMS};

@@ -5,7 +5,8 @@ use pulp::NullaryFnOnce;
 use super::pairs::Pairs;
 use super::*;
 use crate::classes::demand::Demand;
-use crate::classes::{Classes, Form};
+use crate::classes::{Classes, FilterForm};
+use crate::config::Sweeps;
 use crate::config::term::{DimensionGroup, Slicing, Term};
 use crate::kernel::{Kernel, SpatialKernel, TemporalKernel};
 use crate::random;
@@ -22,7 +23,7 @@ fn terms(groups: &[&[usize]]) -> Vec<Term> {
         .enumerate()
         .map(|(i, dims)| DimensionGroup { dims: dims.to_vec(), weight: 1.0 + i as f64 })
         .collect();
-    Objective::blue_noise(&[kernel], Form::LevelSets, &groups, &EXTENT)
+    Term::blue_noise(&[kernel], FilterForm::LevelSets, &groups, &EXTENT)
 }
 
 fn objective(dims: usize, groups: &[&[usize]]) -> Objective {
@@ -163,7 +164,7 @@ fn any_shape_is_swept() {
             TemporalKernel::Gaussian { sigma_frames: 1.0 },
         );
         let groups = [DimensionGroup { dims: vec![0, 1], weight: 1.0 }];
-        let terms = Objective::blue_noise(&[kernel], Form::LevelSets, &groups, &extent);
+        let terms = Term::blue_noise(&[kernel], FilterForm::LevelSets, &groups, &extent);
         let domains = [Domain::Interval; 2];
         let objective = Objective::new(extent, 2, &domains, &terms, &Slicing::default()).unwrap();
         assert_pull_is_gradient(&objective, Pairs::new(&objective.terms[0], extent, 0.0).natural_step());

@@ -21,7 +21,7 @@ pub struct Extent {
 }
 
 /// Most dimensions of a sample: directions take time and memory by the square of them and more.
-pub(crate) const MOST_DIMS: usize = 64;
+pub const MOST_DIMS: usize = 64;
 
 /// Position of a pixel of one frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -73,7 +73,7 @@ impl Extent {
     }
 
     /// Checks that no axis is empty, that there are at most [`MOST_DIMS`] dimensions, and that `samples * dims` values can be numbered with 31 bits.
-    pub(crate) fn validate(&self, dims: usize) -> Result<(), ConfigError> {
+    pub fn validate(&self, dims: usize) -> Result<(), ConfigError> {
         let axes = [
             ("frames", self.frames),
             ("height", self.height),

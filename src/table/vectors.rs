@@ -7,7 +7,7 @@ use crate::table::SampleTable;
 
 /// How two coordinates in `[0, 1)` become a vector. All three preserve area, so that uniform stays uniform.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mapping {
+pub enum VectorMap {
     /// The unit disc, by the concentric map[^disc]: two components.
     ///
     /// [^disc]: Shirley and Chiu 1997, "A low distortion map between disk and square".
@@ -18,12 +18,12 @@ pub enum Mapping {
     CosineHemisphere,
 }
 
-impl Mapping {
+impl VectorMap {
     /// Components of a vector.
     pub fn components(self) -> usize {
         match self {
-            Mapping::Disc => 2,
-            Mapping::Sphere | Mapping::CosineHemisphere => 3,
+            VectorMap::Disc => 2,
+            VectorMap::Sphere | VectorMap::CosineHemisphere => 3,
         }
     }
 
@@ -31,17 +31,17 @@ impl Mapping {
     pub fn map(self, [u, v]: [f32; 2]) -> [f32; 3] {
         let (u, v) = (f64::from(u), f64::from(v));
         let vector = match self {
-            Mapping::Disc => {
+            VectorMap::Disc => {
                 let [x, y] = disc(u, v);
                 [x, y, 0.0]
             }
-            Mapping::Sphere => {
+            VectorMap::Sphere => {
                 let z = 1.0 - 2.0 * u;
                 let (sin, cos) = libm::sincos(std::f64::consts::TAU * v);
                 let radius = (1.0 - z * z).max(0.0).sqrt();
                 [radius * cos, radius * sin, z]
             }
-            Mapping::CosineHemisphere => {
+            VectorMap::CosineHemisphere => {
                 let [x, y] = disc(u, v);
                 [x, y, (1.0 - x * x - y * y).max(0.0).sqrt()]
             }
@@ -70,7 +70,11 @@ impl SampleTable {
     ///
     /// # Errors
     /// A dimension that the table does not have, or the same one twice.
-    pub fn mapped(&self, mapping: Mapping, [first, second]: [usize; 2]) -> Result<Array5<f32>, ConfigError> {
+    pub fn mapped(
+        &self,
+        mapping: VectorMap,
+        [first, second]: [usize; 2],
+    ) -> Result<Array5<f32>, ConfigError> {
         let dims = self.dims();
         if let Some(dimension) = [first, second].into_iter().find(|&dimension| dimension >= dims) {
             return Err(ConfigError::NoSuchDimension { group: 0, dimension, dims });
@@ -99,9 +103,9 @@ mod tests {
         let extent = Extent { frames: 1, height: 256, width: 256, spp: 1 };
         let table = SampleTable::white_noise(extent, 2, 5).unwrap();
         let cases = [
-            (Mapping::Disc, [0.0, 0.0, 0.0], [0.25, 0.25, 0.0]),
-            (Mapping::Sphere, [0.0, 0.0, 0.0], [1.0 / 3.0; 3]),
-            (Mapping::CosineHemisphere, [0.0, 0.0, 2.0 / 3.0], [0.25, 0.25, 0.5]),
+            (VectorMap::Disc, [0.0, 0.0, 0.0], [0.25, 0.25, 0.0]),
+            (VectorMap::Sphere, [0.0, 0.0, 0.0], [1.0 / 3.0; 3]),
+            (VectorMap::CosineHemisphere, [0.0, 0.0, 2.0 / 3.0], [0.25, 0.25, 0.5]),
         ];
         for (mapping, means, squares) in cases {
             let vectors = table.mapped(mapping, [0, 1]).unwrap();
@@ -120,7 +124,7 @@ mod tests {
     #[test]
     fn dimensions_that_cannot_be_mapped_are_named() {
         let table = SampleTable::white_noise(Extent::points(3), 2, 0).unwrap();
-        let error = |dims| table.mapped(Mapping::Disc, dims).unwrap_err();
+        let error = |dims| table.mapped(VectorMap::Disc, dims).unwrap_err();
         assert_eq!(error([0, 2]), ConfigError::NoSuchDimension { group: 0, dimension: 2, dims: 2 });
         assert_eq!(error([1, 1]), ConfigError::RepeatedDimension { group: 0, dimension: 1 });
     }
@@ -128,11 +132,11 @@ mod tests {
     #[test]
     fn vectors_have_their_length() {
         for (u, v) in [(0.0, 0.0), (0.5, 0.5), (0.999_999_9, 0.0), (0.3, 0.8)] {
-            for mapping in [Mapping::Sphere, Mapping::CosineHemisphere] {
+            for mapping in [VectorMap::Sphere, VectorMap::CosineHemisphere] {
                 let length: f32 = mapping.map([u, v]).iter().map(|x| x * x).sum();
                 assert!((length - 1.0).abs() < 1e-6, "{mapping:?} {u} {v}");
             }
-            let [x, y, _] = Mapping::Disc.map([u, v]);
+            let [x, y, _] = VectorMap::Disc.map([u, v]);
             assert!(x * x + y * y <= 1.0 + 1e-6);
         }
     }

@@ -25,7 +25,7 @@ pub trait Measure: std::fmt::Debug + Send + Sync {
 /// A [`Measure`] behind a shared pointer.
 ///
 /// It is serialised as its name. Code cannot be read back from a name, so that deserialising it is an error that says so:
-/// read the rest of the configuration and put the target in again with [`crate::Target::custom`].
+/// read the rest of the configuration and put the target in again with [`Target::custom`](crate::targets::Target::custom).
 #[derive(Clone, Debug)]
 pub struct CustomTarget(Arc<dyn Measure>);
 

@@ -124,7 +124,7 @@ impl Density {
         f64::from(self.values[pixel(y, self.height) * self.width + pixel(x, self.width)])
     }
 
-    /// Lengths of the picture's sides, the longer one being 1.
+    /// PrefixLengths of the picture's sides, the longer one being 1.
     pub(super) fn scales(&self) -> [f64; 2] {
         let longer = self.width.max(self.height) as f64;
         [self.width as f64 / longer, self.height as f64 / longer]

@@ -3,7 +3,7 @@
 mod cloud;
 mod custom;
 mod density;
-#[cfg(feature = "render")]
+#[cfg(feature = "image")]
 mod picture;
 mod start;
 
@@ -11,14 +11,16 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::laws::Projected;
+#[cfg(feature = "image")]
+pub use crate::error::PictureError;
+pub use crate::laws::Projected;
+pub use crate::table::vectors::VectorMap;
 
 pub use cloud::PointCloud;
 pub use custom::{CustomTarget, Measure};
 pub use density::Density;
-#[cfg(feature = "render")]
+#[cfg(feature = "image")]
 pub use picture::{Inks, Tone};
-pub(crate) use start::kronecker_steps;
 
 /// The measure that a class's samples should resemble.
 ///
@@ -71,7 +73,7 @@ impl Target {
         }
     }
 
-    /// Lengths of the sides of the unit cube in the space where distances are measured: 1, but for pictures that are not
+    /// PrefixLengths of the sides of the unit cube in the space where distances are measured: 1, but for pictures that are not
     /// square.
     pub fn scales(&self, dims: usize) -> Vec<f64> {
         match self {

@@ -28,14 +28,6 @@ impl Target {
     }
 }
 
-/// Steps of a Kronecker sequence, `(1/φ, 1/φ², …)` with the root `φ` of `φ^(dims + 1) = φ + 1`: the golden ratio for one
-/// dimension, R2 for two (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
-pub(crate) fn kronecker_steps(dims: usize) -> Vec<f64> {
-    // Newton's iteration would do; this contraction cannot leave (1, 2).
-    let phi = (0..100).fold(1.5_f64, |phi, _| (1.0 + phi).powf(1.0 / (dims as f64 + 1.0)));
-    (1..=dims as i32).map(|d| phi.powi(-d)).collect()
-}
-
 impl Warp<'_> {
     /// Replaces one uniform number per dimension.
     pub(crate) fn place(&self, point: &mut [f64]) {

@@ -1,6 +1,9 @@
 //! The gradient is the derivative of the value, by central differences in a property test that seeks trouble.
 
-use fsot::{Classes, Domain, Extent, Form, Objective, Slice};
+use fsot::Slice;
+use fsot::classes::{Classes, FilterForm};
+use fsot::config::Domain;
+use fsot::{Extent, Objective};
 use proptest::prelude::*;
 
 use crate::{lattice, objective, term, unit};
@@ -67,8 +70,8 @@ fn build(raw: &Raw) -> Case {
     let domain = |&torus: &bool| if torus { Domain::Torus } else { Domain::Interval };
     let domains: Vec<Domain> = raw.torus.iter().map(domain).collect();
     let families = [
-        (lattice(Form::LevelSets), 12),
-        (lattice(Form::Weighted), 12),
+        (lattice(FilterForm::LevelSets), 12),
+        (lattice(FilterForm::Weighted), 12),
         (Classes::WholeTable, 1),
         (Classes::PerFrame, 2),
         (Classes::PerPixel, 12),

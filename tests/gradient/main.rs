@@ -7,8 +7,13 @@ mod refusals;
 mod ties;
 mod values;
 
-use fsot::{Classes, Domain, Extent, Form, Kernel, Objective, Role, Slicing, SpatialKernel, Target};
-use fsot::{TemporalKernel, Term};
+use fsot::classes::{Classes, FilterForm};
+use fsot::config::Term;
+use fsot::config::{Domain, Role, Slicing};
+use fsot::kernel::SpatialKernel;
+use fsot::kernel::TemporalKernel;
+use fsot::targets::Target;
+use fsot::{Extent, Kernel, Objective};
 
 /// A term of weight 1 that is descended.
 fn term(classes: Classes, dims: &[usize]) -> Term {
@@ -16,7 +21,7 @@ fn term(classes: Classes, dims: &[usize]) -> Term {
 }
 
 /// The papers' spatial Gaussian times a moving average, of which a table of several frames sees the past.
-fn lattice(form: Form) -> Classes {
+fn lattice(form: FilterForm) -> Classes {
     let spatial = SpatialKernel::Gaussian { sigma_px: 2.1 };
     Classes::Lattice { kernel: Kernel::product(spatial, TemporalKernel::Ema { alpha: 0.4 }), form }
 }

@@ -1,13 +1,16 @@
 //! What `value_and_gradient` refuses, and how it says so.
 
-use fsot::{Classes, ConfigError, Domain, Extent, Form, Objective, Slice};
+use fsot::Slice;
+use fsot::classes::{Classes, FilterForm};
+use fsot::config::Domain;
+use fsot::{ConfigError, Extent, Objective};
 
 use crate::{lattice, objective, term};
 
 const EXTENT: Extent = Extent { frames: 2, height: 3, width: 4, spp: 1 };
 
 fn planned() -> Objective {
-    let terms = [term(lattice(Form::LevelSets), &[2, 0]), term(Classes::PerFrame, &[1])];
+    let terms = [term(lattice(FilterForm::LevelSets), &[2, 0]), term(Classes::PerFrame, &[1])];
     objective(EXTENT, &[Domain::Torus; 3], &terms)
 }
 

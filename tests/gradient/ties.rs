@@ -1,6 +1,9 @@
 //! Exact ties: the distance is continuous there, but has a corner, of which the gradient is one side.
 
-use fsot::{Classes, Domain, Extent, Form, Slice};
+use fsot::Extent;
+use fsot::Slice;
+use fsot::classes::{Classes, FilterForm};
+use fsot::config::Domain;
 
 use crate::{lattice, objective, spread, term, unit};
 
@@ -20,9 +23,9 @@ fn slices(direction: [f64; 2]) -> Vec<Slice> {
 
 fn planned() -> fsot::Objective {
     let terms = [
-        term(lattice(Form::LevelSets), &[0, 1]),
+        term(lattice(FilterForm::LevelSets), &[0, 1]),
         term(Classes::WholeTable, &[0, 1]),
-        term(lattice(Form::Weighted), &[0, 1]),
+        term(lattice(FilterForm::Weighted), &[0, 1]),
     ];
     objective(EXTENT, &DOMAINS, &terms)
 }

@@ -1,6 +1,9 @@
 //! The value is the mean over slices of `(n / N) W2²`.
 
-use fsot::{Classes, Domain, Extent, Form, Slice};
+use fsot::Extent;
+use fsot::Slice;
+use fsot::classes::{Classes, FilterForm};
+use fsot::config::Domain;
 
 use crate::brute_force::Law;
 use crate::{lattice, objective, spread, term, unit};
@@ -20,7 +23,7 @@ fn weight(member: usize, sample: usize) -> f64 {
 }
 
 /// What the documentation of the objective says, by dense loops over all samples.
-fn by_definition(points: &[f64], dims: usize, torus: bool, form: Form, slice: &Slice) -> f64 {
+fn by_definition(points: &[f64], dims: usize, torus: bool, form: FilterForm, slice: &Slice) -> f64 {
     let coordinate = |value: f64, cut: f64| {
         let shifted = value - cut;
         if torus { shifted - shifted.floor() } else { value }
@@ -29,8 +32,8 @@ fn by_definition(points: &[f64], dims: usize, torus: bool, form: Form, slice: &S
     for (sample, point) in points.chunks_exact(dims).enumerate() {
         let weight = weight(slice.member, sample);
         let mass = match form {
-            Form::Weighted => weight,
-            Form::LevelSets => f64::from(u8::from(weight > slice.level)),
+            FilterForm::Weighted => weight,
+            FilterForm::LevelSets => f64::from(u8::from(weight > slice.level)),
         };
         if mass > 0.0 {
             let along = (0..dims).map(|dim| coordinate(point[dim], slice.cut[dim]) * slice.direction[dim]);
@@ -44,12 +47,14 @@ fn by_definition(points: &[f64], dims: usize, torus: bool, form: Form, slice: &S
 #[test]
 fn the_value_is_that_of_the_definition() {
     for dims in 1..=5 {
-        for (torus, form) in [(false, Form::LevelSets), (true, Form::LevelSets), (true, Form::Weighted)] {
+        for (torus, form) in
+            [(false, FilterForm::LevelSets), (true, FilterForm::LevelSets), (true, FilterForm::Weighted)]
+        {
             let domains = vec![if torus { Domain::Torus } else { Domain::Interval }; dims];
             let all: Vec<usize> = (0..dims).collect();
             let objective = objective(EXTENT, &domains, &[term(lattice(form), &all)]);
             let points = spread(EXTENT.samples() * dims, 0.1);
-            // Subsets of 97, 13, 1 and 5 pixels; next to the centre, taps weigh 0.797.
+            // LabelSubsets of 97, 13, 1 and 5 pixels; next to the centre, taps weigh 0.797.
             let slices: Vec<Slice> = [(0, 0.0), (77, 0.4), (271, 0.8), (60, 0.7)]
                 .into_iter()
                 .map(|(member, level)| Slice {
@@ -114,7 +119,8 @@ fn no_slices_weigh_nothing() {
 #[test]
 fn long_lists_are_means_too() {
     let extent = Extent { frames: 1, height: 2, width: 3, spp: 1 };
-    let objective = objective(extent, &[Domain::Interval; 2], &[term(lattice(Form::LevelSets), &[0, 1])]);
+    let objective =
+        objective(extent, &[Domain::Interval; 2], &[term(lattice(FilterForm::LevelSets), &[0, 1])]);
     let points = spread(12, 0.2);
     let slice = |i: usize| Slice {
         term: 0,

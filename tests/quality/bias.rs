@@ -1,7 +1,8 @@
 //! No bias: a table as a whole is spread as evenly as its target, and without the balancing terms it is not.
 
+use fsot::config::Role;
 use fsot::metrics::Histogram;
-use fsot::{Config, Role, SampleTable};
+use fsot::{Config, SampleTable};
 
 use crate::{extent, optimized};
 

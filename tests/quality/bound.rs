@@ -1,9 +1,10 @@
 //! The bound: of optimised tables, of white noise, and its standard error.
 
-use fsot::{
-    Classes, Config, Descent, Domain, Extent, Form, Objective, Optimizer, Role, SampleTable, Slice, Slicing,
-    Target, Term, metrics,
-};
+use fsot::Slice;
+use fsot::classes::{Classes, FilterForm};
+use fsot::config::{Descent, Domain, Role, Slicing, Term};
+use fsot::targets::Target;
+use fsot::{Config, Extent, Objective, Optimizer, SampleTable, metrics};
 
 use crate::{extent, optimized, ratio};
 
@@ -125,7 +126,7 @@ fn the_weighted_form_is_tighter() {
         let objective = Objective::new(config.extent, 2, &domains, &terms, &Slicing::default()).unwrap();
         metrics::bound(&objective, &table, 5, 4096).unwrap().total
     };
-    let (weighted, level_sets) = (value(Form::Weighted), value(Form::LevelSets));
+    let (weighted, level_sets) = (value(FilterForm::Weighted), value(FilterForm::LevelSets));
     let error = weighted.standard_error.hypot(level_sets.standard_error);
     assert!(weighted.value + 4.0 * error < level_sets.value, "{weighted:?} {level_sets:?}");
 }

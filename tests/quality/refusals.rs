@@ -1,9 +1,10 @@
 //! Every configuration that cannot be optimised, and the words in which it is refused: what is wrong, what to do.
 
-use fsot::{
-    Classes, Config, ConfigError, Descent, Domain, Form, Kernel, Optimizer, Role, SampleTable, Schedule,
-    SpatialKernel, SpatialTap, Target, TemporalKernel, Term, metrics,
-};
+use fsot::classes::{Classes, FilterForm};
+use fsot::config::{Descent, Domain, Role, Schedule, Term};
+use fsot::kernel::{SpatialKernel, SpatialTap, TemporalKernel};
+use fsot::targets::Target;
+use fsot::{Config, ConfigError, Kernel, Optimizer, SampleTable, metrics};
 
 use crate::extent;
 
@@ -25,7 +26,7 @@ fn refusal(change: impl FnOnce(&mut Config)) -> String {
 fn kernel_refusal(spatial: SpatialKernel, temporal: TemporalKernel) -> String {
     refusal(|config| {
         let kernel = Kernel::product(spatial, temporal);
-        config.terms[0].classes = Classes::Lattice { kernel, form: Form::LevelSets };
+        config.terms[0].classes = Classes::Lattice { kernel, form: FilterForm::LevelSets };
     })
 }
 
@@ -160,7 +161,7 @@ fn kernels() {
     for truncation in [1.0, -0.1, f64::NAN] {
         let words = refusal(|config| {
             let kernel = Kernel { spatial: gaussian.clone(), temporal: TemporalKernel::None, truncation };
-            let classes = Classes::Lattice { kernel, form: Form::Weighted };
+            let classes = Classes::Lattice { kernel, form: FilterForm::Weighted };
             let (target, role) = (Target::UniformCube, Role::Descend);
             config.terms = vec![Term { classes, target, dims: vec![0], weight: 1.0, role }];
         });

@@ -1,6 +1,7 @@
 //! How runs end, and tables of unusual shape.
 
-use fsot::{Config, ConfigError, Ended, Optimizer, SampleTable, StepReport, Until};
+use fsot::config::EndReason;
+use fsot::{Config, ConfigError, Optimizer, SampleTable, StepReport, Until};
 
 use crate::{extent, on, optimized, ratio};
 
@@ -14,7 +15,7 @@ fn epochs_and_slices_are_counted() {
     // By default an epoch has 16 slices per pixel, and a step is a sixteenth of it.
     let lattice_share = 0.9;
     let report = optimizer.run(Until::Epochs(3), on).unwrap();
-    assert_eq!(report.ended, Ended::Finished);
+    assert_eq!(report.ended, EndReason::Finished);
     // Steps hold some balancing slices besides.
     let per_class = report.slices as f64 / 256.0;
     assert!((48.0..48.0 / lattice_share).contains(&per_class), "{report:?}");
@@ -23,7 +24,7 @@ fn epochs_and_slices_are_counted() {
     let report = small().run(Until::SlicesPerClass(48), on).unwrap();
     assert_eq!(report.work.slices_per_class, 48);
     let report = small().run(Until::SlicesPerClass(0), on).unwrap();
-    assert_eq!((report.steps, report.slices, report.ended), (0, 0, Ended::Finished));
+    assert_eq!((report.steps, report.slices, report.ended), (0, 0, EndReason::Finished));
 }
 
 #[test]
@@ -53,13 +54,13 @@ fn step_reports_count_up() {
 fn a_run_ends_when_it_no_longer_improves() {
     let until = Until::Converged { improvement: 0.02, window_steps: 16, at_most: 100_000 };
     let report = small().run(until, on).unwrap();
-    assert_eq!(report.ended, Ended::Converged);
+    assert_eq!(report.ended, EndReason::Converged);
     assert!(report.steps.is_multiple_of(16) && report.steps >= 32, "{report:?}");
     assert!(report.slices < 100_000 * 256 / 10, "{report:?}");
     // A rule that never holds leaves the limit.
     let until = Until::Converged { improvement: 0.0, window_steps: 1000, at_most: 16 };
     let report = small().run(until, on).unwrap();
-    assert_eq!((report.ended, report.work.slices_per_class), (Ended::Finished, 16));
+    assert_eq!((report.ended, report.work.slices_per_class), (EndReason::Finished, 16));
 }
 
 #[test]

@@ -1,7 +1,9 @@
 //! What sweeps reach.
 
+use fsot::classes::Classes;
+use fsot::config::{Domain, Work};
 use fsot::metrics::{Bias, Integrands, filtered_error};
-use fsot::{Classes, Config, ConfigError, Domain, Optimizer, Until, Work};
+use fsot::{Config, ConfigError, Optimizer, Until};
 
 use crate::{extent, on, ratio};
 

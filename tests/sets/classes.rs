@@ -1,9 +1,9 @@
 //! Labelled classes and ramps.
 
-use fsot::{
-    Classes, Config, ConfigError, Demand, Extent, Lengths, Optimizer, PrefixLength, PrefixOf, Ramp, Role,
-    Subsets, Target, Term, Until, metrics,
-};
+use fsot::classes::{Classes, Demand, PrefixLength, PrefixLengths, PrefixOf, Ramp};
+use fsot::config::{LabelSubsets, Role, Term};
+use fsot::targets::Target;
+use fsot::{Config, ConfigError, Extent, Optimizer, Until, metrics};
 
 use crate::optimised;
 
@@ -12,13 +12,13 @@ fn distance(points: &[f64]) -> f64 {
 }
 
 fn alone(count: usize) -> f64 {
-    distance(&optimised(Config::classes(&[count], 2, &Subsets::Every), 2000))
+    distance(&optimised(Config::classes(&[count], 2, &LabelSubsets::Every), 2000))
 }
 
 /// Measured: 1.05 to 1.08 after 2,000 slices. The allowance is for other platforms' rounding.
 #[test]
 fn two_classes_and_their_union_are_as_good_as_alone() {
-    let points = optimised(Config::classes(&[512, 512], 2, &Subsets::EachAndAll), 2000);
+    let points = optimised(Config::classes(&[512, 512], 2, &LabelSubsets::EachAndAll), 2000);
     let (single, both) = (alone(512), alone(1024));
     for class in points.chunks_exact(1024) {
         assert!(distance(class) < 1.2 * single, "{} {single}", distance(class));
@@ -28,7 +28,7 @@ fn two_classes_and_their_union_are_as_good_as_alone() {
 
 #[test]
 fn every_set_of_three_labels_is_a_class() {
-    let config = Config::classes(&[60, 100, 140], 2, &Subsets::Every);
+    let config = Config::classes(&[60, 100, 140], 2, &LabelSubsets::Every);
     let Classes::Labelled { subsets, .. } = &config.terms[0].classes else { panic!() };
     assert_eq!(subsets.len(), 7);
     let points = optimised(config, 2000);
@@ -43,7 +43,7 @@ fn every_set_of_three_labels_is_a_class() {
 fn degenerate_labels_are_classes_too() {
     // An empty class beside others, a single point, and equal labels throughout.
     for counts in [vec![0, 40], vec![1], vec![1, 1, 1], vec![40]] {
-        let points = optimised(Config::classes(&counts, 2, &Subsets::EachAndAll), 1000);
+        let points = optimised(Config::classes(&counts, 2, &LabelSubsets::EachAndAll), 1000);
         let count = counts.iter().sum();
         assert_eq!(points.len(), 2 * count);
         assert!(distance(&points) < 1.5 * alone(count), "{counts:?}: {}", distance(&points));
@@ -51,15 +51,15 @@ fn degenerate_labels_are_classes_too() {
             assert!(points.iter().all(|value| (value - 0.5).abs() < 0.02), "{points:?}");
         }
     }
-    let one_label = Config::classes(&[64, 0], 2, &Subsets::Every);
-    let unlabelled = Config::classes(&[64], 2, &Subsets::Every);
+    let one_label = Config::classes(&[64, 0], 2, &LabelSubsets::Every);
+    let unlabelled = Config::classes(&[64], 2, &LabelSubsets::Every);
     assert!(distance(&optimised(one_label, 1000)) < 1.1 * distance(&optimised(unlabelled, 1000)));
 }
 
 #[test]
 fn one_and_three_dimensions_work() {
     for dims in [1, 3] {
-        let points = optimised(Config::classes(&[50, 70], dims, &Subsets::EachAndAll), 1000);
+        let points = optimised(Config::classes(&[50, 70], dims, &LabelSubsets::EachAndAll), 1000);
         let noise = fsot::SampleTable::white_noise(Extent::points(120), dims, 3).unwrap();
         let noise: Vec<f64> = noise.values().iter().map(|&value| value.into()).collect();
         let of = |points: &[f64]| metrics::sliced_w2(points, dims, &Target::UniformCube, 64).unwrap();
@@ -96,7 +96,7 @@ fn terms_that_nobody_demands_are_left_out() {
     let labels: Vec<u32> = (0..80).map(|point| u32::from(point >= 30)).collect();
     let only = |label: u32| term(Classes::labelled(labels.clone(), [vec![label]]));
     let short = PrefixLength { length: 24, weight: 1.0 };
-    let prefix = term(Classes::Prefixes { of: PrefixOf::Table, lengths: Lengths::Given(vec![short]) });
+    let prefix = term(Classes::Prefixes { of: PrefixOf::Table, lengths: PrefixLengths::Given(vec![short]) });
     let demand = |first: usize| {
         let flags = (0..80).map(|point| point >= first).collect();
         Demand::new([1, 1, 80], flags, vec![vec![0, 1]]).unwrap()
@@ -120,7 +120,7 @@ fn terms_that_nobody_demands_are_left_out() {
 
 #[test]
 fn more_labels_than_have_sets_are_classes_still() {
-    let config = Config::classes(&[4; 70], 2, &Subsets::Every);
+    let config = Config::classes(&[4; 70], 2, &LabelSubsets::Every);
     let Classes::Labelled { subsets, .. } = &config.terms[0].classes else { panic!() };
     assert_eq!((subsets.len(), subsets[70].labels.len()), (71, 70));
 }
@@ -128,7 +128,7 @@ fn more_labels_than_have_sets_are_classes_still() {
 /// A number of slices is meant per class, however many a step draws.
 #[test]
 fn slices_are_counted_per_class() {
-    let mut config = Config::classes(&[40, 60], 2, &Subsets::EachAndAll);
+    let mut config = Config::classes(&[40, 60], 2, &LabelSubsets::EachAndAll);
     for batch_slices in [None, Some(96)] {
         config.slicing.batch_slices = batch_slices;
         let mut optimizer = Optimizer::new(config.clone()).unwrap();
@@ -140,7 +140,7 @@ fn slices_are_counted_per_class() {
 
 #[test]
 fn a_class_that_nobody_demands_is_left_alone() {
-    let config = Config::classes(&[30, 50], 2, &Subsets::EachAndAll);
+    let config = Config::classes(&[30, 50], 2, &LabelSubsets::EachAndAll);
     let flags = (0..80).map(|point| point < 30).collect();
     let demand = Demand::new([1, 1, 80], flags, vec![vec![0, 1]]).unwrap();
     let mut optimizer = Optimizer::for_demand(config, &demand).unwrap();
@@ -155,7 +155,7 @@ fn a_class_that_nobody_demands_is_left_alone() {
 
 #[test]
 fn threads_change_nothing() {
-    let config = || Config::classes(&[300, 1100], 2, &Subsets::EachAndAll);
+    let config = || Config::classes(&[300, 1100], 2, &LabelSubsets::EachAndAll);
     let run = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| optimised(config(), 100))

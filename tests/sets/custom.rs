@@ -1,9 +1,9 @@
 //! Families and targets that the caller writes.
 
-use fsot::{
-    ClassFamily, Classes, Config, ConfigError, Extent, Measure, Member, Optimizer, Projected, Role, Target,
-    Term, metrics,
-};
+use fsot::classes::{ClassFamily, ClassSamples, Classes};
+use fsot::config::{Role, Term};
+use fsot::targets::{Measure, Projected, Target};
+use fsot::{Config, ConfigError, Extent, Optimizer, metrics};
 
 use crate::optimised;
 
@@ -21,9 +21,9 @@ impl ClassFamily for Comb {
     fn members(&self, _: &Extent) -> usize {
         self.teeth
     }
-    fn member(&self, extent: &Extent, member: usize) -> Member {
+    fn member(&self, extent: &Extent, member: usize) -> ClassSamples {
         let samples = (member..extent.samples()).step_by(self.teeth).map(|sample| (sample as u32, 1.0));
-        Member { samples: samples.chain(self.fault).collect(), weight: 1.0 }
+        ClassSamples { samples: samples.chain(self.fault).collect(), weight: 1.0 }
     }
 }
 
@@ -137,11 +137,11 @@ fn code_is_written_by_name_and_not_read_back() {
 
 #[test]
 fn all_else_is_read_back() {
-    let density = fsot::Density::new(2, 2, vec![0.0, 1.0, 2.0, 0.5]).unwrap();
-    let cloud = Target::Cloud(fsot::PointCloud::new(2, vec![0.0, 1.0, 0.5, 0.5]).unwrap().into());
+    let density = fsot::targets::Density::new(2, 2, vec![0.0, 1.0, 2.0, 0.5]).unwrap();
+    let cloud = Target::Cloud(fsot::targets::PointCloud::new(2, vec![0.0, 1.0, 0.5, 0.5]).unwrap().into());
     let configs = [
-        Config::classes(&[3, 4], 2, &fsot::Subsets::Every),
-        Config::progressive(16, 2, fsot::Lengths::Every),
+        Config::classes(&[3, 4], 2, &fsot::config::LabelSubsets::Every),
+        Config::progressive(16, 2, fsot::classes::PrefixLengths::Every),
         Config::stippling(10, density),
         Config::point_set(5, 2, vec![term(Classes::WholeTable, cloud)]),
     ];
@@ -151,5 +151,10 @@ fn all_else_is_read_back() {
     }
     // A density from a file is checked like any other.
     let text = r#"{"width":1,"height":2,"values":[0.0,0.0]}"#;
-    assert!(serde_json::from_str::<fsot::Density>(text).unwrap_err().to_string().contains("density is 0"));
+    assert!(
+        serde_json::from_str::<fsot::targets::Density>(text)
+            .unwrap_err()
+            .to_string()
+            .contains("density is 0")
+    );
 }

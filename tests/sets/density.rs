@@ -1,6 +1,8 @@
 //! Laws of densities and clouds, and sets that follow them.
 
-use fsot::{Config, Density, Domain, PointCloud, Projected, Role, Target, Term, metrics};
+use fsot::config::{Domain, Role, Term};
+use fsot::targets::{Density, PointCloud, Projected, Target};
+use fsot::{Config, metrics};
 
 use crate::optimised;
 
@@ -148,7 +150,7 @@ fn a_set_can_thin_out_a_cloud() {
     let ring = (0..3000).flat_map(|i| [0.5 + 0.4 * angle(i).cos(), 0.5 + 0.4 * angle(i).sin()]).collect();
     let target = Target::Cloud(PointCloud::new(2, ring).unwrap().into());
     let term = Term {
-        classes: fsot::Classes::WholeTable,
+        classes: fsot::classes::Classes::WholeTable,
         target: target.clone(),
         dims: vec![0, 1],
         weight: 1.0,

@@ -3,7 +3,7 @@
 mod classes;
 mod custom;
 mod density;
-#[cfg(feature = "render")]
+#[cfg(feature = "image")]
 mod pictures;
 mod progressive;
 mod refusals;

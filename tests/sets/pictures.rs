@@ -1,6 +1,7 @@
 //! Pictures from files: depth, alpha, tone, inks.
 
-use fsot::{Config, ConfigError, Density, Inks, PictureError, Tone};
+use fsot::targets::{Density, Inks, PictureError, Tone};
+use fsot::{Config, ConfigError};
 use image::{DynamicImage, GrayImage, ImageBuffer, Luma, LumaA, Rgb, RgbImage, Rgba, RgbaImage};
 
 use crate::optimised;

@@ -1,14 +1,17 @@
 //! Prefixes of a sequence and of pixels.
 
+use fsot::classes::{Classes, PrefixLength, PrefixLengths, PrefixOf};
+use fsot::config::{Role, Term};
 use fsot::metrics::{self, Integrands};
-use fsot::{Classes, Config, Extent, Lengths, PrefixLength, PrefixOf, Role, Target, Term};
+use fsot::targets::Target;
+use fsot::{Config, Extent};
 
 use crate::optimised;
 
 /// Measured after 4,000 slices: below 0.1 at 64 points, below 0.06 at 256.
 #[test]
 fn every_power_of_two_integrates_well() {
-    let points = optimised(Config::progressive(256, 2, Lengths::PowersOfTwo), 4000);
+    let points = optimised(Config::progressive(256, 2, PrefixLengths::PowersOfTwo), 4000);
     let integrands = Integrands::random(2, 64, 0).unwrap();
     for (length, limit) in [(16, 0.35), (64, 0.15), (256, 0.08)] {
         let ratio = metrics::set_error(&points[..2 * length], &integrands).unwrap().mean.mean;
@@ -18,12 +21,12 @@ fn every_power_of_two_integrates_well() {
 
 #[test]
 fn given_and_all_lengths_can_be_had() {
-    let given = Lengths::Given(vec![
+    let given = PrefixLengths::Given(vec![
         PrefixLength { length: 24, weight: 1.0 },
         PrefixLength { length: 100, weight: 0.5 },
     ]);
     let distance = |points: &[f64]| metrics::sliced_w2(points, 2, &Target::UniformCube, 64).unwrap();
-    for lengths in [given, Lengths::Every] {
+    for lengths in [given, PrefixLengths::Every] {
         let points = optimised(Config::progressive(100, 2, lengths), 1000);
         // White noise: sqrt((1/12) / n) in each direction, about.
         for (length, share) in [(24, 0.7), (100, 0.45)] {
@@ -39,7 +42,7 @@ fn prefixes_of_pixels_join_the_lattice() {
     let extent = Extent { frames: 1, height: 16, width: 16, spp: 8 };
     let mut config = Config::new(extent, 2);
     let plain = optimised(config.clone(), 64);
-    let classes = Classes::Prefixes { of: PrefixOf::Pixel, lengths: Lengths::PowersOfTwo };
+    let classes = Classes::Prefixes { of: PrefixOf::Pixel, lengths: PrefixLengths::PowersOfTwo };
     let (target, dims, role) = (Target::UniformCube, vec![0, 1], Role::Descend);
     config.terms.push(Term { classes, target, dims, weight: 0.5, role });
     let prefixed = optimised(config, 64);

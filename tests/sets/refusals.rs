@@ -1,9 +1,9 @@
 //! What cannot be a class, a prefix, a density or a cloud is refused, with what to do.
 
-use fsot::{
-    Classes, Config, ConfigError, Density, Domain, LabelSet, Lengths, Optimizer, PointCloud, PrefixLength,
-    Ramp, Role, Subsets, Target, Term,
-};
+use fsot::classes::{Classes, LabelSet, PrefixLength, PrefixLengths, Ramp};
+use fsot::config::{Domain, LabelSubsets, Role, Term};
+use fsot::targets::{Density, PointCloud, Target};
+use fsot::{Config, ConfigError, Optimizer};
 
 fn refused(config: Config) -> ConfigError {
     Optimizer::new(config).err().unwrap()
@@ -33,7 +33,7 @@ fn labels_must_fit_the_set() {
         ));
     }
     assert_eq!(
-        refused(Config::classes(&[0, 0], 2, &Subsets::Every)),
+        refused(Config::classes(&[0, 0], 2, &LabelSubsets::Every)),
         ConfigError::EmptyAxis { axis: "width" }
     );
 }
@@ -55,11 +55,11 @@ fn ramps_must_have_coordinates() {
 #[test]
 fn prefixes_must_lie_inside() {
     for length in [0, 17] {
-        let lengths = Lengths::Given(vec![PrefixLength { length, weight: 1.0 }]);
+        let lengths = PrefixLengths::Given(vec![PrefixLength { length, weight: 1.0 }]);
         let error = refused(Config::progressive(16, 2, lengths));
         assert_eq!(error, ConfigError::PrefixLength { length, most: 16 });
     }
-    let error = refused(Config::progressive(16, 2, Lengths::Given(vec![])));
+    let error = refused(Config::progressive(16, 2, PrefixLengths::Given(vec![])));
     assert_eq!(error, ConfigError::NoClasses { family: "prefixes" });
 }
 

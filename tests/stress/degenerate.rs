@@ -2,7 +2,10 @@
 
 use std::ops::ControlFlow;
 
-use fsot::{BELOW_ONE, Config, Domain, Objective, Role, Slice, Target, Until, metrics};
+use fsot::Slice;
+use fsot::config::{BELOW_ONE, Domain, Role};
+use fsot::targets::Target;
+use fsot::{Config, Objective, Until, metrics};
 use proptest::prelude::*;
 
 use crate::{alternating, assert_inside, descents, square, start};

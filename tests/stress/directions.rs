@@ -3,10 +3,11 @@
 use std::ops::ControlFlow;
 use std::sync::LazyLock;
 
-use fsot::{
-    Config, DimensionGroup, Domain, Form, Kernel, Objective, SampleTable, Slice, SpatialKernel,
-    TemporalKernel, Until, metrics,
-};
+use fsot::Slice;
+use fsot::classes::FilterForm;
+use fsot::config::{DimensionGroup, Domain, Term};
+use fsot::kernel::{SpatialKernel, TemporalKernel};
+use fsot::{Config, Kernel, Objective, SampleTable, Until, metrics};
 use proptest::prelude::*;
 
 use crate::{alternating, assert_inside, square};
@@ -19,7 +20,7 @@ fn objective(dims: usize) -> Objective {
     let config = Config::new(square(6, 1), dims);
     let kernel = Kernel::product(SpatialKernel::Gaussian { sigma_px: 2.1 }, TemporalKernel::None);
     let group = DimensionGroup { dims: (0..dims).collect(), weight: 1.0 };
-    let terms = Objective::blue_noise(&[kernel], Form::LevelSets, &[group], &config.extent);
+    let terms = Term::blue_noise(&[kernel], FilterForm::LevelSets, &[group], &config.extent);
     Objective::new(config.extent, dims, &config.domains, &terms[..1], &config.slicing).unwrap()
 }
 

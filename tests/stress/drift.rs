@@ -2,7 +2,8 @@
 
 use std::time::Instant;
 
-use fsot::{Config, Descent, Domain, Extent, Optimizer, Schedule};
+use fsot::config::{Descent, Domain, Schedule};
+use fsot::{Config, Extent, Optimizer};
 
 use crate::{alternating, assert_inside};
 

@@ -2,18 +2,18 @@
 
 use std::ops::ControlFlow;
 
-use fsot::{
-    Config, DimensionGroup, Form, Kernel, Objective, Optimizer, SpatialKernel, SpatialTap, TemporalKernel,
-    Until, metrics,
-};
+use fsot::classes::FilterForm;
+use fsot::config::{DimensionGroup, Term};
+use fsot::kernel::{SpatialKernel, SpatialTap, TemporalKernel};
+use fsot::{Config, Kernel, Optimizer, Until, metrics};
 
 use crate::{assert_inside, square};
 
-fn config(side: usize, spatial: SpatialKernel, form: Form) -> Config {
+fn config(side: usize, spatial: SpatialKernel, form: FilterForm) -> Config {
     let extent = square(side, 1);
     let mut config = Config::new(extent, 2);
     let kernel = Kernel { spatial, temporal: TemporalKernel::None, truncation: 0.0 };
-    config.terms = Objective::blue_noise(&[kernel], form, &DimensionGroup::pairs_and_whole(2), &extent);
+    config.terms = Term::blue_noise(&[kernel], form, &DimensionGroup::pairs_and_whole(2), &extent);
     config
 }
 
@@ -22,7 +22,7 @@ fn config(side: usize, spatial: SpatialKernel, form: Form) -> Config {
 fn one_tap() {
     let tap = SpatialTap { dy: -3, dx: 40, weight: 1e-300 };
     for spatial in [SpatialKernel::Gaussian { sigma_px: 0.01 }, SpatialKernel::Taps(vec![tap])] {
-        for form in [Form::LevelSets, Form::Weighted] {
+        for form in [FilterForm::LevelSets, FilterForm::Weighted] {
             let mut optimizer = Optimizer::new(config(16, spatial.clone(), form)).unwrap();
             assert_eq!(optimizer.objective().taps(0).unwrap().len(), 1);
             assert_eq!(optimizer.objective().taps(0).unwrap()[0].weight, 1.0);
@@ -49,7 +49,7 @@ fn four_thousand_taps() {
         ("sigma 1000", SpatialKernel::Gaussian { sigma_px: 1000.0 }),
         ("any weights", SpatialKernel::Taps(taps)),
     ] {
-        for form in [Form::LevelSets, Form::Weighted] {
+        for form in [FilterForm::LevelSets, FilterForm::Weighted] {
             let mut config = config(64, spatial.clone(), form);
             config.slicing.batch_slices = Some(32);
             let mut optimizer = Optimizer::new(config).unwrap();

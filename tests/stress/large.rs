@@ -1,6 +1,9 @@
 //! A million samples in one class.
 
-use fsot::{Classes, Config, Optimizer, Role, Target, Term};
+use fsot::classes::Classes;
+use fsot::config::{Role, Term};
+use fsot::targets::Target;
+use fsot::{Config, Optimizer};
 
 use crate::{assert_inside, square};
 

@@ -10,7 +10,8 @@ mod drift;
 mod kernels;
 mod large;
 
-use fsot::{Config, Descent, Domain, Extent, Optimizer, SampleTable};
+use fsot::config::{Descent, Domain};
+use fsot::{Config, Extent, Optimizer, SampleTable};
 
 fn square(side: usize, spp: usize) -> Extent {
     Extent { frames: 1, height: side, width: side, spp }

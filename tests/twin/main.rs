@@ -2,22 +2,22 @@
 
 mod textbook;
 
-use fsot::{
-    Config, Descent, DimensionGroup, Domain, Extent, Form, Kernel, Objective, Optimizer, Role, SampleTable,
-    SpatialKernel, SpatialTap, TemporalKernel,
-};
+use fsot::classes::FilterForm;
+use fsot::config::{Descent, DimensionGroup, Domain, Role, Term};
+use fsot::kernel::{SpatialKernel, SpatialTap, TemporalKernel};
+use fsot::{Config, Extent, Kernel, Optimizer, SampleTable};
 
 /// What a case is about; the rest is [`Config::new`].
 struct Case {
     extent: [usize; 4],
     dims: usize,
     temporal: TemporalKernel,
-    form: Form,
+    form: FilterForm,
     groups: Vec<DimensionGroup>,
     torus: bool,
     directions: usize,
     axis_share: f64,
-    /// Subsets per step, about.
+    /// LabelSubsets per step, about.
     subsets: usize,
 }
 
@@ -27,7 +27,7 @@ impl Case {
             extent,
             dims,
             temporal: TemporalKernel::None,
-            form: Form::LevelSets,
+            form: FilterForm::LevelSets,
             groups: DimensionGroup::pairs_and_whole(dims),
             torus: false,
             directions: 16,
@@ -41,7 +41,7 @@ impl Case {
         let extent = Extent { frames, height, width, spp };
         let kernel = Kernel::product(SpatialKernel::Gaussian { sigma_px: 2.1 }, self.temporal.clone());
         let mut config = Config::new(extent, self.dims);
-        config.terms = Objective::blue_noise(&[kernel], self.form, &self.groups, &extent);
+        config.terms = Term::blue_noise(&[kernel], self.form, &self.groups, &extent);
         // As much of the balancing terms as makes them take part in every step.
         for term in &mut config.terms {
             if term.role == Role::Balance {
@@ -169,7 +169,7 @@ fn several_samples_per_pixel() {
     assert!(sizes.iter().any(|&size| (257..=388).contains(&size)), "{sizes:?}");
 }
 
-/// Subsets above 1024 samples leave the lanes; all of these sizes share one family and its sixteen directions.
+/// LabelSubsets above 1024 samples leave the lanes; all of these sizes share one family and its sixteen directions.
 #[test]
 fn sixteen_samples_per_pixel() {
     for (dims, axis_share) in [(2, 0.3), (3, 0.3)] {
@@ -223,13 +223,13 @@ fn torus() {
 #[test]
 fn weighted_form() {
     for dims in [1, 2, 3] {
-        let case = Case { form: Form::Weighted, subsets: 100, ..Case::new([1, 16, 16, 1], dims) };
+        let case = Case { form: FilterForm::Weighted, subsets: 100, ..Case::new([1, 16, 16, 1], dims) };
         case.check();
     }
-    let case = Case { form: Form::Weighted, subsets: 60, torus: true, ..Case::new([3, 8, 8, 2], 2) };
+    let case = Case { form: FilterForm::Weighted, subsets: 60, torus: true, ..Case::new([3, 8, 8, 2], 2) };
     case.check();
     // Above 1024 samples per slice.
-    Case { form: Form::Weighted, subsets: 40, ..Case::new([1, 12, 12, 16], 2) }.check();
+    Case { form: FilterForm::Weighted, subsets: 40, ..Case::new([1, 12, 12, 16], 2) }.check();
 }
 
 #[test]
@@ -295,7 +295,8 @@ fn weights_too_small_to_have_a_cell() {
         let extent = Extent { frames: 1, height: 16, width: 16, spp: 128 };
         let mut config = Config::new(extent, dims);
         let groups = [group(&[0, 1, 2][..dims], 1.0)];
-        config.terms = Objective::blue_noise(std::slice::from_ref(&kernel), Form::Weighted, &groups, &extent);
+        config.terms =
+            Term::blue_noise(std::slice::from_ref(&kernel), FilterForm::Weighted, &groups, &extent);
         config.slicing.batch_slices = Some(2);
         let mut optimizer = Optimizer::new(config).unwrap();
         assert_eq!(optimizer.objective().taps(0).unwrap().len(), 256);
@@ -310,7 +311,7 @@ fn weights_too_small_to_have_a_cell() {
 fn the_pull_is_the_negative_gradient() {
     for (case, d) in [
         (Case::new([1, 16, 16, 1], 2), 2.0),
-        (Case { form: Form::Weighted, subsets: 60, ..Case::new([1, 16, 16, 1], 2) }, 2.0),
+        (Case { form: FilterForm::Weighted, subsets: 60, ..Case::new([1, 16, 16, 1], 2) }, 2.0),
         (Case { torus: true, temporal: PERCEPTUAL, ..Case::new([6, 10, 10, 1], 1) }, 1.0),
         (Case { groups: vec![group(&[2, 0, 1], 1.0)], ..Case::new([1, 12, 12, 1], 3) }, 3.0),
     ] {
@@ -335,7 +336,7 @@ fn the_pull_is_the_negative_gradient() {
             let expected = -gradient[coordinate] * scale / hits;
             assert!((pull.mean[coordinate] - expected).abs() < 1e-9, "coordinate {coordinate}");
             // … and the engine's is, to that of f32, where no face of an interval stopped it.
-            if after == 0.0 || after == fsot::BELOW_ONE {
+            if after == 0.0 || after == fsot::config::BELOW_ONE {
                 continue;
             }
             let mut moved = f64::from(after) - points[coordinate];

@@ -2,9 +2,12 @@
 //!
 //! Shared with the engine are the slices and the law of a projection, which has tests of its own.
 
-use fsot::{
-    Classes, Config, Domain, Extent, Form, Role, Site, Slice, SpatialKernel, Target, TemporalKernel, Term,
-};
+use fsot::Slice;
+use fsot::classes::{Classes, FilterForm};
+use fsot::config::{Domain, Role, Term};
+use fsot::kernel::{SpatialKernel, TemporalKernel};
+use fsot::targets::Target;
+use fsot::{Config, Extent, Site};
 
 /// The first five taps of the perceptual kernel at 60 frames per second; the sixth is negative. From the published
 /// table of Korać et al. 2023.
@@ -74,7 +77,7 @@ fn select(extent: &Extent, term: &Term, slice: &Slice) -> Vec<(usize, f64)> {
         let weight = weight(extent.site(sample / extent.spp));
         match &term.classes {
             Classes::Lattice { kernel, .. } if weight < kernel.truncation => 0.0,
-            Classes::Lattice { form: Form::Weighted, .. } => weight,
+            Classes::Lattice { form: FilterForm::Weighted, .. } => weight,
             _ => f64::from(u8::from(weight > slice.level)),
         }
     };
@@ -157,7 +160,7 @@ fn transport(
         edges.push(edges[edges.len() - 1] + mass / total);
     }
     let targets: Vec<f64> = match &term.classes {
-        Classes::Lattice { form: Form::Weighted, .. } => {
+        Classes::Lattice { form: FilterForm::Weighted, .. } => {
             edges.windows(2).map(|cell| law.cell_mean(cell[0], cell[1])).collect()
         }
         _ => law.cell_means(sorted.len()).collect(),

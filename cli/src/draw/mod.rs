@@ -1,0 +1,4 @@
+//! Pages to draw on.
+
+pub mod canvas;
+pub mod page;

@@ -1,0 +1,315 @@
+//! Renders a scene with sample tables, white noise and Owen-scrambled Sobol', and says which is better.
+//!
+//! ```text
+//! cargo run --release --example compare_samplers -- --table a.npy b.npy --scene soft_shadow --spp 1 --out sheet
+//! ```
+//!
+//! Prints the errors as ratios to white noise and writes `SCENE-SPPspp.png`, a contact sheet with a column per
+//! sampler (rendered, filtered, filtered error, error spectrum), and one EXR of the last frame per sampler.
+
+mod sheet;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Parser;
+use fsot::kernel::TemporalKernel;
+use fsot::{SampleTable, Site};
+use fsot_lab::render::{Comparison, Film, ImageFilter, Reference, Scene, compare, demand, render};
+use fsot_lab::samplers::{OwenSobol, Sampler, TableSampler, WhiteNoise};
+use indicatif::{ProgressBar, ProgressStyle};
+use sheet::{Cell, Sheet};
+
+/// Render a scene with sample tables, white noise and Owen-scrambled Sobol', and compare their errors.
+#[derive(Parser)]
+struct Args {
+    /// Tables to compare, as .npy files with axes [frame, y, x, sample, dim].
+    #[arg(long, num_args = 1.., value_name = "PATH")]
+    table: Vec<PathBuf>,
+    /// Scene: soft_shadow, defocus, glossy, ambient_occlusion or animated_soft_shadow.
+    #[arg(long, default_value = "soft_shadow", value_name = "NAME")]
+    scene: String,
+    /// Samples per pixel.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=65536))]
+    spp: u32,
+    /// Height and width of the picture in pixels.
+    #[arg(long, default_value_t = 128, value_parser = clap::value_parser!(u32).range(32..=1024))]
+    resolution: u32,
+    /// Samples per pixel of the reference.
+    #[arg(long, default_value_t = 1024, value_parser = clap::value_parser!(u32).range(64..=1_048_576))]
+    reference_spp: u32,
+    /// First realisation of the noise: seeds white noise and Sobol', displaces tables. The one that is shown.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Realisations to average the errors over; a single picture's error is itself noisy.
+    #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    repeats: u32,
+    /// Frames per second, for the eye's temporal filter on animated scenes.
+    #[arg(long, default_value_t = 60.0)]
+    fps: f64,
+    /// Directory for the pictures; made if absent.
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Directory for references [default: fsot-references in the system's temporary directory].
+    #[arg(long, value_name = "DIR")]
+    cache: Option<PathBuf>,
+}
+
+fn main() -> ExitCode {
+    match run(&Args::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// A sampler's realisation with this seed.
+type Realise<'t> = Box<dyn Fn(u64) -> Box<dyn Sampler + 't> + 't>;
+
+type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
+
+/// A rendering and what is said about it.
+struct Entry {
+    label: String,
+    note: String,
+    /// The first realisation.
+    film: Film,
+    ratios: Ratios,
+}
+
+/// Errors over those of white noise, mean over realisations.
+struct Ratios {
+    rmse: f64,
+    rel_mse: f64,
+    p_rel_mse: f64,
+    /// Standard error of `p_rel_mse`; NaN for one realisation.
+    p_rel_mse_error: f64,
+    p_rel_mse_wide: f64,
+    /// What the reference's own error adds to `p_rel_mse`.
+    floor: f64,
+}
+
+impl Ratios {
+    fn mean(found: &[Comparison]) -> Self {
+        let count = found.len() as f64;
+        let mean = |ratio: fn(&Comparison) -> f64| found.iter().map(ratio).sum::<f64>() / count;
+        let p_rel_mse = mean(|c| c.p_rel_mse.ratio());
+        let spread: f64 = found.iter().map(|c| (c.p_rel_mse.ratio() - p_rel_mse).powi(2)).sum();
+        Self {
+            rmse: mean(|c| c.mse.ratio()).sqrt(),
+            rel_mse: mean(|c| c.rel_mse.ratio()),
+            p_rel_mse,
+            p_rel_mse_error: (spread / (count - 1.0) / count).sqrt(),
+            p_rel_mse_wide: mean(|c| c.p_rel_mse_wide.ratio()),
+            floor: mean(|c| c.p_rel_mse.floor / c.p_rel_mse.white),
+        }
+    }
+}
+
+fn run(args: &Args) -> Outcome<()> {
+    let scene = Scene::by_name(&args.scene).ok_or_else(|| {
+        format!("there is no scene {:?}; choose one of {}", args.scene, Scene::NAMES.join(", "))
+    })?;
+    let tables = load(&args.table)?;
+    std::fs::create_dir_all(&args.out)
+        .map_err(|error| format!("cannot create {}: {error}; choose another --out", args.out.display()))?;
+    let resolution = [args.resolution as usize; 2];
+    let temporal = match scene.frames {
+        1 => TemporalKernel::None,
+        _ => TemporalKernel::Perceptual { fps: args.fps },
+    };
+
+    let progress = ProgressBar::new(tables.len() as u64 + 3)
+        .with_style(ProgressStyle::with_template("{bar:30} {pos}/{len} {wide_msg}")?);
+    progress.set_message(format!("reference of {} at {} spp", scene.name, args.reference_spp));
+    let cache = args.cache.clone().unwrap_or_else(|| std::env::temp_dir().join("fsot-references"));
+    let reference = Reference::cached(&scene, resolution, args.reference_spp, cache)?;
+    progress.inc(1);
+
+    let mut contenders: Vec<(String, String, Realise)> = vec![
+        ("white noise".into(), String::new(), Box::new(|seed| Box::new(WhiteNoise::new(seed)))),
+        ("Owen-Sobol'".into(), String::new(), Box::new(|seed| Box::new(OwenSobol::new(seed)))),
+    ];
+    for (label, table) in &tables {
+        let realise: Realise =
+            Box::new(|seed| Box::new(TableSampler::new(table).shifted(displacement(seed))));
+        contenders.push((label.clone(), notes(table, &scene, args.spp), realise));
+    }
+    let mut entries = Vec::new();
+    for (label, note, realise) in contenders {
+        progress.set_message(label.clone());
+        let mut shown = None;
+        let mut found = Vec::new();
+        for seed in args.seed..args.seed + u64::from(args.repeats) {
+            let film = render(&scene, &*realise(seed), resolution, args.spp)?;
+            found.push(compare(&film, &reference, args.spp, &temporal)?);
+            shown.get_or_insert(film);
+        }
+        let film = shown.ok_or("give --repeats of at least 1")?;
+        film.save_exr(args.out.join(file_name(&scene, args.spp, &label)), scene.frames - 1)?;
+        entries.push(Entry { label, note, film, ratios: Ratios::mean(&found) });
+        progress.inc(1);
+    }
+    progress.finish_and_clear();
+
+    let demand = demand(&scene, resolution)?;
+    println!(
+        "{}, {}x{}, {} frame(s), {} spp, dimension groups {:?}, {:.0} % of the pixels demanded",
+        scene.name,
+        args.resolution,
+        args.resolution,
+        scene.frames,
+        args.spp,
+        scene.dimension_groups(),
+        100.0 * demand.share()
+    );
+    print_ratios(&entries);
+    let path = args.out.join(format!("{}-{}spp.png", scene.name, args.spp));
+    contact_sheet(&scene, args, &entries, &reference, &temporal)?
+        .save(&path)
+        .map_err(|error| format!("cannot write {}: {error}; choose another --out", path.display()))?;
+    println!("contact sheet: {}", path.display());
+    Ok(())
+}
+
+/// Tables with labels; two files of the same name are told apart by their number.
+fn load(paths: &[PathBuf]) -> Outcome<Vec<(String, SampleTable)>> {
+    let mut tables: Vec<(String, SampleTable)> = Vec::new();
+    for path in paths {
+        let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+        let taken = tables.iter().any(|(other, _)| *other == name);
+        let label = if taken { format!("{name} #{}", tables.len() + 1) } else { name };
+        tables.push((label, SampleTable::load(path)?));
+    }
+    Ok(tables)
+}
+
+/// What the table lacks for this scene, in the words of `TableSampler`.
+fn notes(table: &SampleTable, scene: &Scene, spp: u32) -> String {
+    let mut notes = Vec::new();
+    if table.dims() < scene.dims() {
+        notes.push(format!("{} of {} dims, rest white", table.dims(), scene.dims()));
+    }
+    if table.extent().spp < spp as usize {
+        notes.push(format!("{} of {spp} spp, rest displaced", table.extent().spp));
+    }
+    notes.join("; ")
+}
+
+/// Seed 0 leaves tables in place; other seeds displace them by well-spread amounts.
+fn displacement(seed: u64) -> Site {
+    let at = |ratio: f64| ((seed as f64 * ratio).fract() * 1024.0) as usize;
+    Site { frame: 0, y: at(0.569_840_290_998), x: at(0.754_877_666_247) }
+}
+
+fn file_name(scene: &Scene, spp: u32, label: &str) -> String {
+    let plain = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };
+    format!("{}-{spp}spp-{}.exr", scene.name, label.chars().map(plain).collect::<String>())
+}
+
+fn print_ratios(entries: &[Entry]) {
+    let width = entries.iter().map(|entry| entry.label.len()).max().unwrap_or(0);
+    println!("ratios to the expectation of white noise; lower is better");
+    println!("{:width$}    RMSE  relMSE  pRelMSE s=2.1 +-error  pRelMSE sd=2.1", "sampler");
+    for Entry { label, note, ratios, .. } in entries {
+        println!(
+            "{label:width$}  {:6.3}  {:6.3}  {:13.3}  {:6.3}  {:14.3}  {note}",
+            ratios.rmse, ratios.rel_mse, ratios.p_rel_mse, ratios.p_rel_mse_error, ratios.p_rel_mse_wide,
+        );
+    }
+    let floor = entries.iter().map(|entry| entry.ratios.floor).fold(0.0, f64::max);
+    println!("the reference's own error contributes {floor:.5} to pRelMSE ratios");
+    println!("s: exp(-r^2/2.1^2); sd: exp(-r^2/(2*2.1^2)); animations: after the eye's temporal filter");
+}
+
+/// A column per sampler, and the truth at the left.
+fn contact_sheet(
+    scene: &Scene,
+    args: &Args,
+    entries: &[Entry],
+    reference: &Reference,
+    temporal: &TemporalKernel,
+) -> Outcome<Sheet> {
+    let filter = ImageFilter::gaussian(2.1)?.with_temporal(temporal)?;
+    let last = scene.frames - 1;
+    // The 99th percentile of what is noisy becomes almost white; visible lights may be brighter.
+    let pairs = reference.mean.values().iter().zip(reference.variance.values());
+    let mut sorted: Vec<f64> =
+        pairs.filter(|(_, variance)| **variance > 0.0).map(|(mean, _)| *mean).collect();
+    sorted.sort_by(f64::total_cmp);
+    let bright = sorted.get(sorted.len().saturating_sub(1) * 99 / 100).copied().unwrap_or(1.0);
+    let exposure = 0.9 / bright.max(1e-9);
+    let truth = filter.apply(&reference.mean)?;
+    let kept = truth.shape()[0] - 1;
+    let error_of = |film: &Film| {
+        let pairs = film.values().iter().zip(reference.mean.values());
+        Film::new(film.shape(), pairs.map(|(image, truth)| image - truth).collect())
+    };
+    // Grey is no error; the ends are three standard deviations of filtered white noise, the same for everyone.
+    let white = filter.apply_to_variance(&reference.variance)?;
+    let mean_variance = white.values().iter().sum::<f64>() / white.values().len() as f64;
+    let three = 3.0 * (mean_variance / f64::from(args.spp)).sqrt().max(1e-12);
+
+    let when = if scene.frames > 1 { ", last frame" } else { "" };
+    let mut sheet = Sheet::new(
+        args.resolution as usize,
+        &format!("{}{when}: {} spp, {} x {}", scene.name, args.spp, args.resolution, args.resolution),
+    );
+    let of_all = if scene.frames > 1 { "spectrum, all frames" } else { "error spectrum" };
+    let after = if scene.frames > 1 { "filtered, space + time" } else { "filtered, s = 2.1 px" };
+    sheet.column(
+        "reference",
+        ["error, as a ratio", "to white noise:"],
+        [
+            Cell::linear("as rendered", reference.mean.frame(last)?, exposure),
+            Cell::linear(after, truth.frame(kept)?, exposure),
+            Cell::blank(&[
+                "HOW TO READ",
+                "",
+                "Row 1: as rendered.",
+                "Row 2: as the eye or a",
+                "denoiser smooths it.",
+                "Row 3: what is wrong in",
+                "row 2; grey = nothing,",
+                "ends = 3 deviations of",
+                "white noise.",
+                "Row 4: spectrum of the",
+                "error; middle = low",
+                "frequency = visible.",
+                "Even grey: white noise.",
+                "Dark middle: blue noise.",
+            ]),
+            Cell::blank(&[]),
+        ],
+    );
+    for entry in entries {
+        let error = error_of(&entry.film)?;
+        let filtered_error = filter.apply(&error)?;
+        let shown: Vec<f64> =
+            filtered_error.frame(kept)?.iter().map(|error| 0.5 + 0.5 * error / three).collect();
+        let spectrum = sheet::spectrum(&error, &reference.variance, args.spp)?;
+        sheet.column(
+            &entry.label,
+            [
+                &format!("pRelMSE  {:.3}", entry.ratios.p_rel_mse),
+                &format!("RMSE     {:.3}", entry.ratios.rmse),
+            ],
+            [
+                Cell::linear("as rendered", entry.film.frame(last)?, exposure),
+                Cell::linear(after, filter.apply(&entry.film)?.frame(kept)?, exposure),
+                Cell::levels("error of the filtered", &shown),
+                Cell::levels(of_all, &spectrum),
+            ],
+        );
+    }
+    Ok(sheet)
+}
+
+impl Sheet {
+    /// Writes the sheet as PNG.
+    fn save(&self, path: &Path) -> Outcome<()> {
+        Ok(self.picture().save(path)?)
+    }
+}

@@ -1,0 +1,180 @@
+//! The tables of all samplers, made once.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use fsot::Until;
+use fsot::classes::FilterForm;
+use fsot::config::Work;
+use fsot::config::{DimensionGroup, Term};
+use fsot::kernel::{SpatialKernel, TemporalKernel};
+use fsot::{Config, Extent, Kernel, Optimizer, SampleTable};
+use fsot_lab::samplers::{DitherMask, Fast, ScramblingKeys, Stbn, stratified};
+
+use crate::{Failure, Scale, measure, scene};
+
+/// What a table is made by.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Maker {
+    Stratified,
+    Dither,
+    Keys,
+    Stbn,
+    /// FAST, for the eye's filter: in space alone for one frame, in space and time for more.
+    Fast,
+    /// FAST, for temporal antialiasing.
+    FastTaa,
+    /// Ours, for the eye's filter: in space alone for one frame, in space and time for more.
+    Ours,
+    /// Ours, for temporal antialiasing.
+    OursTaa,
+}
+
+/// A table to make.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Recipe {
+    pub maker: Maker,
+    pub dims: usize,
+    pub spp: usize,
+    pub frames: usize,
+}
+
+impl fmt::Display for Recipe {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        let name = match self.maker {
+            Maker::Stratified => "stratified",
+            Maker::Dither => "dither mask",
+            Maker::Keys => "scrambling keys",
+            Maker::Stbn => "STBN",
+            Maker::Fast => "FAST",
+            Maker::FastTaa => "FAST for TAA",
+            Maker::Ours => "ours",
+            Maker::OursTaa => "ours for TAA",
+        };
+        write!(out, "{name}, {} dims, {} spp, {} frame(s)", self.dims, self.spp, self.frames)
+    }
+}
+
+pub struct Shelf {
+    pub scale: Scale,
+    pub seed: u64,
+    tables: BTreeMap<Recipe, SampleTable>,
+    seconds: Vec<(Recipe, f64)>,
+}
+
+impl Shelf {
+    pub fn new(scale: Scale, seed: u64) -> Self {
+        Self { scale, seed, tables: BTreeMap::new(), seconds: Vec::new() }
+    }
+
+    /// All tables that the scenes need.
+    pub fn recipes(scale: &Scale) -> Result<BTreeSet<Recipe>, Failure> {
+        let mut recipes = BTreeSet::new();
+        let stills = scale.still_scenes.iter().map(|scene| (scene, false));
+        for (name, animated) in stills.chain(scale.animated_scenes.iter().map(|scene| (scene, true))) {
+            let dims = scene(name)?.dims();
+            let frames = if animated { scale.tile_frames } else { 1 };
+            let mut add = |maker, dims, spp, frames| recipes.insert(Recipe { maker, dims, spp, frames });
+            add(Maker::Dither, 1, 1, 1); // the mask of a-posteriori methods
+            add(Maker::Dither, dims, 1, 1);
+            add(Maker::Stbn, 2, 1, scale.tile_frames);
+            add(Maker::Fast, 2, 1, 1);
+            if animated {
+                add(Maker::Fast, 2, 1, frames);
+                add(Maker::FastTaa, 2, 1, frames);
+            }
+            for &spp in &scale.spps {
+                add(Maker::Stratified, dims, spp as usize, 1);
+                add(Maker::Keys, dims, spp.next_power_of_two() as usize, 1);
+                add(Maker::Ours, dims, spp as usize, 1);
+                if animated {
+                    add(Maker::Ours, dims, spp as usize, frames);
+                    add(Maker::OursTaa, dims, spp as usize, frames);
+                }
+            }
+        }
+        Ok(recipes)
+    }
+
+    pub fn make(&mut self, recipe: Recipe) -> Result<(), Failure> {
+        let Recipe { maker, dims, spp, frames } = recipe;
+        let Scale { tile, effort, .. } = self.scale;
+        // Ours repeat a quarter of the tile where it would be long in the making; the kernels are far smaller.
+        let long = matches!(maker, Maker::Ours | Maker::OursTaa) && frames > 1 && spp > 1;
+        let side = if long { tile / 2 } else { tile };
+        let extent = Extent { frames, height: side, width: side, spp };
+        let seed = self.seed;
+        let begin = Instant::now();
+        let sweeps = |sweeps: u64| (sweeps as f64 * effort).ceil() as u64;
+        let table = match maker {
+            Maker::Stratified => stratified(extent, dims, seed)?,
+            Maker::Dither => {
+                let mut mask = DitherMask { seed, ..DitherMask::new(extent, dims) };
+                mask.cooling.sweeps = sweeps(1000);
+                mask.table()?
+            }
+            Maker::Keys => {
+                let mut keys = ScramblingKeys { seed, ..ScramblingKeys::new(extent, dims) };
+                keys.cooling.sweeps = sweeps(1000);
+                keys.table()?
+            }
+            Maker::Stbn => {
+                let mut mask = Stbn { seed, ..Stbn::new(extent, dims) };
+                mask.cooling.sweeps = sweeps(100);
+                mask.table()?
+            }
+            Maker::Fast | Maker::FastTaa => {
+                let mut table = Fast { seed, ..Fast::new(extent, dims) };
+                if maker == Maker::FastTaa {
+                    table.kernels = vec![for_taa()];
+                }
+                table.cooling.sweeps = sweeps(if frames > 1 { 150 } else { 2000 });
+                table.table()?
+            }
+            Maker::Ours => ours(Config { seed, ..Config::new(extent, dims) }, tile, effort)?,
+            Maker::OursTaa => {
+                let groups = DimensionGroup::pairs_and_whole(dims);
+                let terms = Term::blue_noise(&[for_taa()], FilterForm::LevelSets, &groups, &extent);
+                ours(Config { seed, terms, ..Config::new(extent, dims) }, tile, effort)?
+            }
+        };
+        self.seconds.push((recipe, begin.elapsed().as_secs_f64()));
+        self.tables.insert(recipe, table);
+        Ok(())
+    }
+
+    /// What the tables took, in the order of their making.
+    pub fn seconds(&self) -> &[(Recipe, f64)] {
+        &self.seconds
+    }
+
+    /// A table that was made.
+    pub fn table(&self, recipe: Recipe) -> Result<&SampleTable, Failure> {
+        self.tables.get(&recipe).ok_or_else(|| format!("no table was made for {recipe}").into())
+    }
+}
+
+/// Our tables, with the optimiser's defaults: slices, then sweeps, and about as much of each for every shape. Slices take
+/// time in proportion to the samples of a pixel, sweeps to their square.
+fn ours(config: Config, tile: usize, effort: f64) -> Result<SampleTable, Failure> {
+    let Extent { frames, height, width, spp } = config.extent;
+    let room = (tile * tile) as f64 / (height * width) as f64;
+    let [slices, sweeps] = if frames > 1 { [300.0, 150.0] } else { [6000.0, 2000.0] };
+    let slices_per_class = (slices * effort * room / spp as f64).ceil() as u64;
+    let sweeps = (sweeps * effort * room / (spp * spp) as f64).ceil() as u64;
+    let mut optimizer = Optimizer::new(config)?;
+    optimizer.run(Until::Work(Work { slices_per_class, sweeps }), |_| ControlFlow::Continue(()))?;
+    Ok(optimizer.into_table())
+}
+
+/// The eye's spatial filter times the history of temporal antialiasing.
+fn for_taa() -> Kernel {
+    Kernel::product(SpatialKernel::Gaussian { sigma_px: 2.1 }, measure::taa())
+}
+
+/// The kernel of the eye over frames at 60 per second.
+pub fn eye() -> TemporalKernel {
+    TemporalKernel::Perceptual { fps: 60.0 }
+}

@@ -1,0 +1,53 @@
+//! What a table is worth, in the three figures that the benches report.
+
+use fsot::classes::Classes;
+use fsot::metrics::{Bias, Integrands, bound, filtered_error};
+use fsot::{Config, ConfigError, Extent, Kernel, Objective, SampleTable};
+
+/// Ratios to white noise of the same shape: 1 is random, 0 is perfect.
+#[derive(Clone, Copy, Debug)]
+pub struct Quality {
+    /// Squared error after the filter, mean over the families of test integrands.
+    pub filtered: f64,
+    /// The default objective with exact distances.
+    pub bound: f64,
+    /// Squared error of the mean over the whole table.
+    pub bias: f64,
+}
+
+/// Measures tables of one shape: always the same filter, integrands and slices, so that differences have little noise.
+pub struct Judge {
+    kernel: Kernel,
+    objective: Objective,
+    integrands: Integrands,
+    slices: usize,
+}
+
+impl Judge {
+    /// Judges two-dimensional tables of this extent by the objective of [`Config::new`].
+    pub fn new(extent: Extent, integrands: usize, slices: usize) -> Result<Self, ConfigError> {
+        let Config { dims, domains, terms, slicing, .. } = Config::new(extent, 2);
+        let kernel = terms.iter().find_map(|term| match &term.classes {
+            Classes::Lattice { kernel, .. } => Some(kernel.clone()),
+            _ => None,
+        });
+        Ok(Self {
+            kernel: kernel.expect("the default objective has a kernel"),
+            objective: Objective::new(extent, dims, &domains, &terms, &slicing)?,
+            integrands: Integrands::random(dims, integrands, 0)?,
+            slices,
+        })
+    }
+
+    /// Measures a table of the extent that was announced.
+    pub fn judge(&self, table: &SampleTable) -> Result<Quality, ConfigError> {
+        Ok(Quality {
+            filtered: filtered_error(table, &[0, 1], &self.kernel, &self.integrands)?
+                .spatio_temporal
+                .mean
+                .mean,
+            bound: bound(&self.objective, table, 0, self.slices)?.total.ratio_to_white_noise,
+            bias: Bias::measure(table, &[0, 1], &self.integrands)?.table.mean.mean,
+        })
+    }
+}

@@ -1,0 +1,154 @@
+//! Images: linear luminance per pixel and frame, and their way into files.
+
+use std::io::{Cursor, Write};
+use std::path::Path;
+
+use image::{GrayImage, ImageFormat, Luma, Rgb, Rgb32FImage};
+
+use super::error::{RenderError, not_empty};
+use fsot::files::WholeFile;
+
+/// Linear luminance `[frame][y][x]` in C order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    shape: [usize; 3],
+    values: Vec<f64>,
+}
+
+impl Film {
+    /// A film from values in C order.
+    ///
+    /// # Errors
+    /// An empty axis; a number of values that does not fit the shape.
+    pub fn new(shape: [usize; 3], values: Vec<f64>) -> Result<Self, RenderError> {
+        for (axis, len) in ["frames", "height", "width"].into_iter().zip(shape) {
+            not_empty(axis, len)?;
+        }
+        let expected = shape.iter().product();
+        if values.len() != expected {
+            return Err(RenderError::Length { given: values.len(), expected });
+        }
+        Ok(Self { shape, values })
+    }
+
+    /// A film of zeros.
+    ///
+    /// # Errors
+    /// An empty axis.
+    pub fn black(shape: [usize; 3]) -> Result<Self, RenderError> {
+        Self::new(shape, vec![0.0; shape.iter().product()])
+    }
+
+    /// Frames, height and width.
+    pub fn shape(&self) -> [usize; 3] {
+        self.shape
+    }
+
+    /// All values in C order.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// All values in C order, to change.
+    pub fn values_mut(&mut self) -> &mut [f64] {
+        &mut self.values
+    }
+
+    /// The pixels of one frame, row by row.
+    ///
+    /// # Errors
+    /// A frame that the film does not have.
+    pub fn frame(&self, frame: usize) -> Result<&[f64], RenderError> {
+        let [frames, height, width] = self.shape;
+        if frame >= frames {
+            return Err(RenderError::NoSuchFrame { frame, frames });
+        }
+        Ok(&self.values[frame * height * width..(frame + 1) * height * width])
+    }
+
+    /// One frame as 8-bit grey: times `exposure`, clamped to `[0, 1]`, sRGB curve.
+    ///
+    /// # Errors
+    /// A frame that the film does not have.
+    pub fn to_grey(&self, frame: usize, exposure: f64) -> Result<GrayImage, RenderError> {
+        let values = self.frame(frame)?;
+        let width = self.shape[2];
+        Ok(GrayImage::from_fn(width as u32, self.shape[1] as u32, |x, y| {
+            Luma([srgb(values[y as usize * width + x as usize] * exposure)])
+        }))
+    }
+
+    /// Writes [`to_grey`](Self::to_grey) as PNG; the file appears whole or not at all.
+    ///
+    /// # Errors
+    /// A frame that the film does not have; a path that cannot be written.
+    pub fn save_png(&self, path: impl AsRef<Path>, frame: usize, exposure: f64) -> Result<(), RenderError> {
+        let path = path.as_ref();
+        let picture = self.to_grey(frame, exposure)?;
+        save(path, |out| picture.write_to(out, ImageFormat::Png))
+    }
+
+    /// Writes one frame as EXR: linear, 32-bit, the luminance in each of R, G and B, which every viewer shows.
+    ///
+    /// # Errors
+    /// A frame that the film does not have; a path that cannot be written.
+    pub fn save_exr(&self, path: impl AsRef<Path>, frame: usize) -> Result<(), RenderError> {
+        let path = path.as_ref();
+        let values = self.frame(frame)?;
+        let width = self.shape[2];
+        let picture = Rgb32FImage::from_fn(width as u32, self.shape[1] as u32, |x, y| {
+            Rgb([values[y as usize * width + x as usize] as f32; 3])
+        });
+        save(path, |out| picture.write_to(out, ImageFormat::OpenExr))
+    }
+}
+
+/// Encodes in memory, writes beside the path and renames.
+fn save(
+    path: &Path,
+    encode: impl FnOnce(&mut Cursor<Vec<u8>>) -> image::ImageResult<()>,
+) -> Result<(), RenderError> {
+    let mut bytes = Cursor::new(Vec::new());
+    encode(&mut bytes).map_err(|source| RenderError::Picture { path: path.into(), source })?;
+    WholeFile::write(path, |out| out.write_all(bytes.get_ref()))
+        .and_then(WholeFile::commit)
+        .map_err(|source| RenderError::Io { verb: "write", path: path.into(), source })
+}
+
+/// The sRGB transfer curve (IEC 61966-2-1) in 8 bits.
+fn srgb(linear: f64) -> u8 {
+    let linear = linear.clamp(0.0, 1.0);
+    let curved = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+    (curved * 255.0).round() as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_come_back() {
+        let directory = tempfile::tempdir().unwrap();
+        let film = Film::new([2, 1, 3], vec![0.0, 0.0, 0.0, 0.25, 1.0, 7.5]).unwrap();
+        let path = directory.path().join("a.exr");
+        film.save_exr(&path, 1).unwrap();
+        let read = image::open(&path).unwrap().into_rgb32f();
+        assert_eq!(read.pixels().map(|p| p[1]).collect::<Vec<_>>(), [0.25, 1.0, 7.5]);
+        let path = directory.path().join("a.png");
+        film.save_png(&path, 1, 1.0).unwrap();
+        let read = image::open(&path).unwrap().into_luma8();
+        // sRGB of 0.25 is 0.5371 (IEC 61966-2-1): 136.96.
+        assert_eq!(read.as_raw(), &[137, 255, 255]);
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        let film = Film::black([1, 2, 2]).unwrap();
+        let error = film.save_png("/no/such/place.png", 0, 1.0).unwrap_err();
+        assert!(error.to_string().contains("/no/such/place.png"), "{error}");
+        assert!(matches!(film.frame(1), Err(RenderError::NoSuchFrame { frame: 1, frames: 1 })));
+        assert!(matches!(Film::black([1, 0, 2]), Err(RenderError::Config(_))));
+        let error = Film::new([1, 2, 2], vec![0.0; 3]).unwrap_err();
+        assert!(matches!(error, RenderError::Length { given: 3, expected: 4 }));
+    }
+}
