@@ -7,6 +7,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use fsot::classes::{Classes, FilterForm};
 use fsot::config::{Role, Term};
 use fsot::kernel::{SpatialKernel, SpatialTap, TemporalKernel};
+use fsot::optimizer::SliceStep;
 use fsot::targets::Target;
 use fsot::{Config, Extent, Kernel, Optimizer};
 
@@ -22,13 +23,15 @@ fn slice(criterion: &mut Criterion) {
         let mut group = criterion.benchmark_group(format!("slice_{dims}d"));
         for size in SIZES {
             let mut optimizer = Optimizer::new(config(size, dims)).expect("the cases are valid");
-            let (before, slices) = one_thread.install(|| optimizer.step(0.5, 1.0));
+            let SliceStep { displacement: before, slices, .. } =
+                one_thread.install(|| optimizer.step(0.5, 1.0));
             assert_eq!(slices as usize, slices_per_step(size));
             group.throughput(Throughput::Elements(slices * size as u64));
             group.bench_function(BenchmarkId::from_parameter(size), |bencher| {
                 one_thread.install(|| bencher.iter(|| optimizer.step(0.5, 1.0)));
             });
-            let after = one_thread.install(|| (0..8).map(|_| optimizer.step(0.5, 1.0).0).sum::<f64>() / 8.0);
+            let after = one_thread
+                .install(|| (0..8).map(|_| optimizer.step(0.5, 1.0).displacement).sum::<f64>() / 8.0);
             assert!(after < before, "{size} samples in {dims} dimensions: displacement {before} to {after}");
             let table = optimizer.into_table();
             assert!(table.values().iter().all(|value| (0.0..1.0).contains(value)), "values left the cube");

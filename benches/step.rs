@@ -5,8 +5,6 @@
 #[path = "common/selected.rs"]
 mod selected;
 
-use std::ops::ControlFlow;
-
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use fsot::classes::{Classes, Demand};
 use fsot::config::EndReason;
@@ -57,7 +55,7 @@ fn sigma(criterion: &mut Criterion) {
         group.bench_function(BenchmarkId::from_parameter(sigma_px), |bencher| {
             bencher.iter(|| optimizer.step(0.1, 0.1));
         });
-        let (displacement, _) = optimizer.step(0.1, 0.1);
+        let displacement = optimizer.step(0.1, 0.1).displacement;
         assert!(displacement.is_finite() && displacement > 0.0);
     }
     group.finish();
@@ -80,7 +78,7 @@ fn demand(criterion: &mut Criterion) {
             bencher.iter(|| {
                 let mut optimizer =
                     Optimizer::for_demand(Config::new(extent, 2), &demand).expect("the cases are valid");
-                let report = optimizer.run(Until::SlicesPerClass(128), |_| ControlFlow::Continue(()));
+                let report = optimizer.run(Until::SlicesPerClass(128));
                 assert_eq!(report.expect("the run is valid").ended, EndReason::Finished);
             });
         });

@@ -46,7 +46,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let whole = Term { classes: Classes::WholeTable, target, dims, weight: 1.0, role };
     let windows = Term { classes: Classes::custom(Windows), ..whole.clone() };
     let mut optimizer = Optimizer::new(Config::point_set(1024, 2, vec![windows, whole]))?;
-    optimizer.run(Until::SlicesPerClass(2000), |_| std::ops::ControlFlow::Continue(()))?;
+    optimizer.run(Until::SlicesPerClass(2000))?;
     let table = optimizer.into_table();
     let inside = |dot: &&[f32]| (dot[0] - 0.5).hypot(dot[1] - 0.5) < 0.505;
     assert!(table.values().chunks_exact(2).filter(inside).count() == 1024, "points left the disc");

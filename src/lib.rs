@@ -11,7 +11,7 @@
 //!
 //! let extent = Extent { frames: 1, height: 32, width: 32, spp: 1 };
 //! let mut optimizer = Optimizer::new(Config::new(extent, 2))?;
-//! optimizer.run(Until::Seconds(0.05), |_progress| ControlFlow::Continue(()))?;
+//! optimizer.run(Until::Seconds(0.05))?;
 //! let bound = metrics::bound(optimizer.objective(), &optimizer.table(), 0, 4096)?;
 //! assert!(bound.total.ratio_to_white_noise < 0.75);
 //!
@@ -37,7 +37,7 @@
 //! use fsot::{Config, Optimizer, Until, metrics};
 //!
 //! let mut optimizer = Optimizer::new(Config::classes(&[64, 64], 2, &LabelSubsets::EachAndAll))?;
-//! optimizer.run(Until::SlicesPerClass(1000), |_progress| ControlFlow::Continue(()))?;
+//! optimizer.run(Until::SlicesPerClass(1000))?;
 //! let points: Vec<f64> = optimizer.into_table().values().iter().map(|&value| value.into()).collect();
 //! let of_the_first_label = metrics::sliced_w2(&points[..2 * 64], 2, &Target::UniformCube, 64)?;
 //! assert!(of_the_first_label < 0.02);
@@ -79,8 +79,9 @@ pub mod kernel;
 mod laws;
 pub mod method;
 pub mod metrics;
-mod objective;
-mod optimizer;
+mod named;
+pub mod objective;
+pub mod optimizer;
 pub mod random;
 mod simd;
 mod slices;
@@ -89,12 +90,10 @@ mod table;
 pub mod targets;
 mod transport;
 
-pub use config::Config;
-pub use config::until::Until;
+pub use config::{Config, Until};
 pub use error::ConfigError;
 pub use kernel::Kernel;
-pub use objective::{Objective, Slice};
-pub use optimizer::Optimizer;
-pub use optimizer::report::{RunReport, StepReport};
+pub use objective::Objective;
+pub use optimizer::{Optimizer, RunReport};
 pub use table::SampleTable;
 pub use table::extent::{Extent, Site};

@@ -1,7 +1,5 @@
 //! Steps work in buffers that the first ones have made, and those are few.
 
-use std::ops::ControlFlow;
-
 use allocation_counter::measure;
 use fsot::config::Work;
 use fsot::{Config, Extent, Optimizer, Until};
@@ -46,7 +44,7 @@ fn the_peak_of_a_run_is_a_small_multiple_of_the_table() {
             measure(|| {
                 let mut optimizer = Optimizer::new(Config::new(extent, 2)).unwrap();
                 let work = Until::Work(Work { slices_per_class, sweeps });
-                optimizer.run(work, |_| ControlFlow::Continue(())).unwrap();
+                optimizer.run(work).unwrap();
             })
             .bytes_max
         });

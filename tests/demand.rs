@@ -1,16 +1,14 @@
 //! Only what is demanded is optimised: nothing else moves, nothing demanded is worse for it, and the work shrinks with
 //! the demand.
 
-use std::ops::ControlFlow;
-
 use fsot::classes::Demand;
-use fsot::config::{Domain, Role};
+use fsot::config::{Domain, GroupError, Role};
 use fsot::{Config, ConfigError, Extent, Objective, Optimizer, SampleTable, Site, Until, metrics};
 
 const EXTENT: Extent = Extent { frames: 2, height: 24, width: 40, spp: 2 };
 
 fn run(mut optimizer: Optimizer, slices: u64) -> Optimizer {
-    optimizer.run(Until::SlicesPerClass(slices), |_| ControlFlow::Continue(())).unwrap();
+    optimizer.run(Until::SlicesPerClass(slices)).unwrap();
     optimizer
 }
 
@@ -69,9 +67,8 @@ fn the_work_shrinks_with_the_demand() {
     let extent = Extent { frames: 1, height: 64, width: 64, spp: 1 };
     let config = Config::new(extent, 2);
     let demand = disc(extent, vec![vec![0, 1]]);
-    let Config { domains, terms, slicing, .. } = &config;
-    let whole = Objective::new(extent, 2, domains, terms, slicing).unwrap();
-    let part = Objective::for_demand(extent, 2, domains, terms, slicing, &demand).unwrap();
+    let whole = Objective::new(&config).unwrap();
+    let part = Objective::for_demand(&config, &demand).unwrap();
     let near = |member: usize| {
         let Site { y, x, .. } = extent.site(member);
         // Radius of the disc, 11.4 pixels, and of the kernel, 5.4.
@@ -123,6 +120,7 @@ fn demands_that_cannot_be_met_are_named() {
     };
     assert_eq!(refused(false, vec![vec![0, 1]]), ConfigError::NoDemand);
     assert_eq!(refused(true, vec![]), ConfigError::NoDemand);
-    let missing = ConfigError::NoSuchDimension { group: 1, dimension: 2, dims: 2 };
+    let problem = GroupError::NoSuchDimension { dimension: 2, dims: 2 };
+    let missing = ConfigError::DemandGroup { group: 1, problem };
     assert_eq!(refused(true, vec![vec![0], vec![1, 2]]), missing);
 }

@@ -5,11 +5,12 @@ use std::ops::ControlFlow;
 
 use fsot::classes::PrefixLengths;
 use fsot::config::{Descent, EndReason, LabelSubsets, Role, Work};
-use fsot::{Config, Extent, Optimizer, SampleTable, StepReport, Until, metrics};
+use fsot::optimizer::{SliceStep, StepReport};
+use fsot::{Config, Extent, Optimizer, SampleTable, Until, metrics};
 
 fn config(extent: [usize; 4], dims: usize, descent: Descent, seed: u64) -> Config {
     let [frames, height, width, spp] = extent;
-    Config { descent, seed, ..Config::new(Extent { frames, height, width, spp }, dims) }
+    Config::new(Extent { frames, height, width, spp }, dims).with_descent(descent).with_seed(seed)
 }
 
 fn on(_: &StepReport) -> ControlFlow<()> {
@@ -41,7 +42,7 @@ fn cases() -> Vec<Config> {
     ]
 }
 
-/// LabelSubsets that share their sorts between threads: alone, and in flight with others, where a worker that waits for a part of
+/// Subsets that share their sorts between threads: alone, and in flight with others, where a worker that waits for a part of
 /// its sort is lent to another subset. Balanced subsets that are too many to wait, and one that is too large.
 #[test]
 fn threads_do_not_change_a_bit_of_large_subsets() {
@@ -61,7 +62,7 @@ fn threads_do_not_change_a_bit_of_large_subsets() {
         let run = |threads| {
             with_threads(threads, || {
                 let mut optimizer = optimizer(&config);
-                let (displacement, slices) = optimizer.step(1.0, 1.0);
+                let SliceStep { displacement, slices, .. } = optimizer.step(1.0, 1.0);
                 if config.extent.frames > 1 {
                     optimizer.sweep(1.0, 1.0).unwrap();
                 }
@@ -82,7 +83,7 @@ fn threads_do_not_change_a_bit() {
                 let mut optimizer = optimizer(&config);
                 let mut displacements = Vec::new();
                 let report = optimizer
-                    .run(Until::Work(Work { slices_per_class: 10, sweeps: 2 }), |step| {
+                    .run_observed(Until::Work(Work { slices_per_class: 10, sweeps: 2 }), |step| {
                         displacements.push(step.displacement.to_bits());
                         ControlFlow::Continue(())
                     })
@@ -131,7 +132,7 @@ fn gradients_do_not_depend_on_threads() {
 fn seeds_differ() {
     let run = |seed| {
         let mut optimizer = optimizer(&config([1, 16, 16, 1], 2, Descent::barycentric(), seed));
-        optimizer.run(Until::SlicesPerClass(16), on).unwrap();
+        optimizer.run_observed(Until::SlicesPerClass(16), on).unwrap();
         optimizer.into_table()
     };
     assert_eq!(bits(&run(7)), bits(&run(7)));
@@ -155,10 +156,10 @@ fn seconds_are_reproduced_by_slices() {
         config([1, 7, 5, 3], 4, Descent::sgd(), 6),
     ] {
         let mut timed = optimizer(&config);
-        let report = timed.run(Until::Seconds(0.1), on).unwrap();
+        let report = timed.run_observed(Until::Seconds(0.1), on).unwrap();
         assert_eq!(report.ended, EndReason::Finished);
         let mut counted = optimizer(&config);
-        let again = counted.run(Until::Work(report.work), on).unwrap();
+        let again = counted.run_observed(Until::Work(report.work), on).unwrap();
         assert_eq!((again.steps, again.slices), (report.steps, report.slices));
         assert_eq!(again.work, report.work);
         assert!(bits(&timed.table()) == bits(&counted.table()), "{:?}", config.extent);
@@ -171,8 +172,8 @@ fn any_run_is_reproduced_by_its_slices() {
     for until in [Until::Epochs(3), Until::SlicesPerClass(37), Until::SlicesPerClass(1), Until::Sweeps(2)] {
         let config = config([1, 12, 10, 1], 3, Descent::barycentric(), 4);
         let (mut first, mut second) = (optimizer(&config), optimizer(&config));
-        let report = first.run(until, on).unwrap();
-        let again = second.run(Until::Work(report.work), on).unwrap();
+        let report = first.run_observed(until, on).unwrap();
+        let again = second.run_observed(Until::Work(report.work), on).unwrap();
         assert_eq!(report.steps, again.steps, "{until:?} {report:?}");
         assert_eq!(bits(&first.table()), bits(&second.table()), "{until:?}");
     }
@@ -221,7 +222,7 @@ fn a_stopped_run_keeps_what_was_reached() {
         let mut stopped = optimizer(&config);
         let mut planned = 0;
         let report = stopped
-            .run(Until::SlicesPerClass(64), |step| {
+            .run_observed(Until::SlicesPerClass(64), |step| {
                 planned = step.steps;
                 if step.step == 17 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             })
@@ -232,7 +233,7 @@ fn a_stopped_run_keeps_what_was_reached() {
         let mut slices = 0;
         for step in 0..17 {
             let progress = step as f64 / planned as f64;
-            slices += replayed.step(config.descent.rate().at(progress), config.balance.at(progress)).1;
+            slices += replayed.step(config.descent.rate().at(progress), config.balance.at(progress)).slices;
         }
         assert_eq!(bits(&stopped.table()), bits(&replayed.table()));
         assert_eq!(slices, report.slices);

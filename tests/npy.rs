@@ -3,10 +3,10 @@
 use std::fs;
 use std::path::Path;
 
-use fsot::files::TableError;
-use fsot::files::{BoundEstimate, BoundRecord, FormatError, KernelTaps, Metadata, RunRecord};
+use fsot::config::ExtentError;
+use fsot::files::{BoundEstimate, BoundRecord, FormatError, KernelTaps, Metadata, RunRecord, TableError};
 use fsot::kernel::Tap;
-use fsot::{ConfigError, Extent, SampleTable};
+use fsot::{Extent, SampleTable};
 use proptest::prelude::*;
 use tempfile::{TempDir, tempdir};
 
@@ -86,7 +86,7 @@ fn metadata(table: &SampleTable) -> Metadata {
         }],
         bound: Some(BoundRecord { before: estimate, after: estimate }),
         run: RunRecord { slices_per_class: 64, sweeps: 3, ended_early: true, steps: 4096, seconds: 12.75 },
-        ..Metadata::new(table, u64::MAX - 1, configuration)
+        ..Metadata::new(table.extent(), table.dims(), u64::MAX - 1, configuration)
     }
 }
 
@@ -243,7 +243,7 @@ fn other_shapes_are_named() {
     }
     assert_eq!(
         problem(&f32s("(1, 0, 4, 1, 2)", &[]), &["[1, 0, 4, 1, 2]", "height is 0", "at least 1"]),
-        FormatError::Extent { shape: [1, 0, 4, 1, 2], problem: ConfigError::EmptyAxis { axis: "height" } }
+        FormatError::Extent { shape: [1, 0, 4, 1, 2], problem: ExtentError::EmptyAxis { axis: "height" } }
     );
     // 2^64 - 1 on four axes: the product overflows any integer.
     let huge = f32s(&format!("({0}, {0}, {0}, {0}, 1)", u64::MAX), &[0.5]);
@@ -252,7 +252,7 @@ fn other_shapes_are_named() {
         problem(&huge, &["18446744073709551615", "2147483647"]),
         FormatError::Extent {
             shape: [usize::MAX, usize::MAX, usize::MAX, usize::MAX, 1],
-            problem: ConfigError::TooLarge { values: u64::MAX }
+            problem: ExtentError::TooLarge { values: u64::MAX }
         }
     );
     // Just admissible, 8 GiB: refused for its length before any memory is asked for.

@@ -43,8 +43,7 @@ fn measure(name: &str) -> Figures {
         filtered += filtered_error(&table, pair, kernel, &integrands).unwrap().spatio_temporal.mean.mean;
         bias += Bias::measure(&table, pair, &integrands).unwrap().table.mean.mean;
     }
-    let Config { extent, dims, domains, terms, slicing, .. } = &config;
-    let objective = Objective::new(*extent, *dims, domains, terms, slicing).unwrap();
+    let objective = Objective::new(&config).unwrap();
     let bound = bound(&objective, &table, 0, 8192).unwrap().total.ratio_to_white_noise;
     Figures { filtered: filtered / pairs.len() as f64, bound, bias: bias / pairs.len() as f64 }
 }

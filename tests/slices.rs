@@ -3,9 +3,9 @@
 
 use std::f64::consts::PI;
 
-use fsot::Slice;
 use fsot::classes::Classes;
 use fsot::config::Role;
+use fsot::objective::Slice;
 use fsot::{Config, Extent, Objective};
 
 const EXTENT: Extent = Extent { frames: 4, height: 16, width: 24, spp: 1 };
@@ -13,8 +13,7 @@ const EXTENT: Extent = Extent { frames: 4, height: 16, width: 24, spp: 1 };
 const STEPS: u64 = 20;
 
 fn objective() -> Objective {
-    let Config { domains, terms, slicing, .. } = Config::new(EXTENT, 2);
-    Objective::new(EXTENT, 2, &domains, &terms, &slicing).unwrap()
+    Objective::new(&Config::new(EXTENT, 2)).unwrap()
 }
 
 fn draws(role: Role, steps: u64) -> Vec<Slice> {
@@ -102,8 +101,7 @@ fn the_whole_table_and_every_frame_are_balanced() {
 #[test]
 fn many_rare_terms_take_turns() {
     let extent = Extent { frames: 1, height: 4, width: 4, spp: 1 };
-    let Config { domains, terms, slicing, .. } = Config::new(extent, 64);
-    let objective = Objective::new(extent, 64, &domains, &terms, &slicing).unwrap();
+    let objective = Objective::new(&Config::new(extent, 64)).unwrap();
     let counts: Vec<usize> = (0..64).map(|step| objective.draw(0, step, Role::Descend).len()).collect();
     // One batch is 16 slices, one subset; give or take a few terms that fire early or late.
     let total: usize = counts.iter().sum();

@@ -10,9 +10,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::{Failure, temporal};
 use clap::{Args, ValueEnum};
-use fsot::classes::FilterForm;
-use fsot::config::{Descent, DimensionGroup, Domain, EndReason, Term, Work};
-use fsot::files::{BoundRecord, KernelTaps, Metadata, RunRecord};
+use fsot::config::{Descent, DimensionGroup, Domain, EndReason, Work};
+use fsot::files::{BoundRecord, Metadata};
 use fsot::kernel::{SpatialKernel, TemporalKernel};
 use fsot::{Config, Extent, Kernel, Optimizer, RunReport, SampleTable, Until, metrics};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -119,7 +118,7 @@ fn optimize(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.quiet {
         bar.set_draw_target(ProgressDrawTarget::hidden());
     }
-    let report = optimizer.run(until(arguments), |step| {
+    let report = optimizer.run_observed(until(arguments), |step| {
         bar.set_length(step.steps);
         bar.set_position(step.step);
         bar.set_message(format!(", displacement {:.4}", step.displacement));
@@ -130,18 +129,9 @@ fn optimize(arguments: &Arguments) -> Result<(), Failure> {
     let bound = if arguments.no_bound { None } else { Some(bound(&optimizer)?) };
     let seconds = report.elapsed.as_secs_f64();
     let ended_early = report.ended != EndReason::Finished;
-    let configuration = serde_json::to_value(optimizer.config())?;
-    let objective = optimizer.objective();
-    let taps = |term| Some(KernelTaps { term, taps: objective.taps(term)?.to_vec() });
-    let kernels = (0..objective.terms().count()).filter_map(taps).collect();
+    let metadata = Metadata { bound, ..optimizer.metadata(&report) };
     let table = optimizer.into_table();
     let RunReport { work: Work { slices_per_class, sweeps }, steps, .. } = report;
-    let metadata = Metadata {
-        kernels,
-        bound,
-        run: RunRecord { slices_per_class, sweeps, ended_early, steps, seconds },
-        ..Metadata::new(&table, arguments.seed, configuration)
-    };
     table.save_with(&arguments.out, &metadata)?;
 
     if arguments.quiet {
@@ -212,12 +202,12 @@ fn config(arguments: &Arguments) -> Config {
         Some(DescentName::Adam) => Descent::adam(),
         Some(DescentName::Sgd) => Descent::sgd(),
     };
-    let mut config = Config::new(extent, dims);
-    config.domains.fill(domain);
-    config.terms = Term::blue_noise(&[kernel], FilterForm::LevelSets, &groups, &extent);
-    config.descent = descent;
-    config.seed = arguments.seed;
-    config
+    Config::new(extent, dims)
+        .with_domain(domain)
+        .with_groups(&groups)
+        .with_kernel(kernel)
+        .with_descent(descent)
+        .with_seed(arguments.seed)
 }
 
 fn parse_groups(text: &str) -> Result<Groups, String> {

@@ -97,7 +97,7 @@ fn white_noise_is_called_white_noise() {
 fn metadata_are_summed_up_and_damage_is_said() {
     let (_home, path) = table([1, 4, 4, 1], 2);
     let values = SampleTable::load(&path).unwrap();
-    let mut metadata = Metadata::new(&values, 77, serde_json::Value::Null);
+    let mut metadata = Metadata::new(values.extent(), values.dims(), 77, serde_json::Value::Null);
     metadata.run.slices_per_class = 123;
     values.save_with(&path, &metadata).unwrap();
     let text = figures(&path, &FEW);

@@ -1,6 +1,5 @@
 //! What a table is worth, in the three figures that the benches report.
 
-use fsot::classes::Classes;
 use fsot::metrics::{Bias, Integrands, bound, filtered_error};
 use fsot::{Config, ConfigError, Extent, Kernel, Objective, SampleTable};
 
@@ -26,15 +25,11 @@ pub struct Judge {
 impl Judge {
     /// Judges two-dimensional tables of this extent by the objective of [`Config::new`].
     pub fn new(extent: Extent, integrands: usize, slices: usize) -> Result<Self, ConfigError> {
-        let Config { dims, domains, terms, slicing, .. } = Config::new(extent, 2);
-        let kernel = terms.iter().find_map(|term| match &term.classes {
-            Classes::Lattice { kernel, .. } => Some(kernel.clone()),
-            _ => None,
-        });
+        let config = Config::new(extent, 2);
         Ok(Self {
-            kernel: kernel.expect("the default objective has a kernel"),
-            objective: Objective::new(extent, dims, &domains, &terms, &slicing)?,
-            integrands: Integrands::random(dims, integrands, 0)?,
+            kernel: config.kernels().remove(0),
+            objective: Objective::new(&config)?,
+            integrands: Integrands::random(2, integrands, 0)?,
             slices,
         })
     }

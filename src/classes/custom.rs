@@ -1,10 +1,6 @@
 //! Families of classes that the caller writes.
 
-use std::sync::Arc;
-
-use serde::de::Error;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
+use crate::named::{ByName, Named};
 use crate::table::extent::Extent;
 
 /// A family of filters of the caller's own.
@@ -32,44 +28,14 @@ pub struct ClassSamples {
     pub weight: f64,
 }
 
-/// A [`ClassFamily`] behind a shared pointer.
-///
-/// It is serialised as its name. Code cannot be read back from a name, so that deserialising it is an error that says so:
-/// read the rest of the configuration and put the family in again with [`Classes::custom`](crate::classes::Classes::custom).
-#[derive(Clone, Debug)]
-pub struct CustomClasses(Arc<dyn ClassFamily>);
+impl Named for dyn ClassFamily {
+    const KIND: &'static str = "class family";
+    const CONSTRUCTOR: &'static str = "Classes::custom";
 
-impl CustomClasses {
-    /// Wraps a family.
-    pub fn new(family: impl ClassFamily + 'static) -> Self {
-        Self(Arc::new(family))
-    }
-
-    /// The family.
-    pub fn family(&self) -> &dyn ClassFamily {
-        &*self.0
+    fn name(&self) -> &str {
+        ClassFamily::name(self)
     }
 }
 
-/// Equal if they are the same object.
-impl PartialEq for CustomClasses {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.0, &other.0)
-    }
-}
-
-impl Serialize for CustomClasses {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.0.name())
-    }
-}
-
-impl<'de> Deserialize<'de> for CustomClasses {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let name = String::deserialize(deserializer)?;
-        Err(D::Error::custom(format!(
-            "the class family \"{name}\" is code, which no file holds: take its term out of the file, read the rest, and \
-             add the term again with Classes::custom"
-        )))
-    }
-}
+/// A [`ClassFamily`] behind a shared pointer; [`Classes::custom`](super::Classes::custom) makes one.
+pub type CustomClasses = ByName<dyn ClassFamily>;

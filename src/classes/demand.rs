@@ -1,6 +1,8 @@
 //! What a scene will really consume: pixels and frames with any variance, and groups of dimensions.
 
-use crate::error::ConfigError;
+use std::sync::Arc;
+
+use crate::error::{ConfigError, ExtentError, GroupError};
 use crate::table::extent::{Extent, Site};
 
 /// The part of a table that a renderer reads in earnest.
@@ -29,17 +31,12 @@ impl Demand {
         Extent { frames, height, width, spp: 1 }.validate(1)?;
         let expected = frames * height * width;
         if pixels.len() != expected {
-            return Err(ConfigError::ValueCount { what: "the demand", given: pixels.len(), expected });
+            return Err(ConfigError::DemandCount { given: pixels.len(), expected });
         }
         for (group, dimensions) in groups.iter().enumerate() {
-            if dimensions.is_empty() {
-                return Err(ConfigError::EmptyGroup { group });
-            }
-            for (at, dimension) in dimensions.iter().enumerate() {
-                if dimensions[..at].contains(dimension) {
-                    return Err(ConfigError::RepeatedDimension { group, dimension: *dimension });
-                }
-            }
+            // Whether the table has them is found out when there is one.
+            GroupError::check(dimensions, usize::MAX)
+                .map_err(|problem| ConfigError::DemandGroup { group, problem })?;
         }
         Ok(Self { frames, height, width, pixels, groups })
     }
@@ -84,14 +81,54 @@ impl Demand {
     ///
     /// # Errors
     /// An empty or oversized tile.
-    pub fn folded(&self, tile: &Extent) -> Result<Self, ConfigError> {
+    pub fn folded(&self, tile: &Extent) -> Result<Self, ExtentError> {
         tile.validate(1)?;
         let mut pixels = vec![false; tile.sites()];
         let image = Extent { frames: self.frames, height: self.height, width: self.width, spp: 1 };
         for index in (0..self.pixels.len()).filter(|&index| self.pixels[index]) {
             pixels[tile.site_index(tile.wrapped(image.site(index), (0, 0, 0)))] = true;
         }
-        Self::new([tile.frames, tile.height, tile.width], pixels, self.groups.clone())
+        let Extent { frames, height, width, .. } = *tile;
+        Ok(Self { frames, height, width, pixels, groups: self.groups.clone() })
+    }
+}
+
+/// Demanded sites of a table: one flag each, or all of them.
+#[derive(Clone, Debug)]
+pub(crate) enum Wanted {
+    /// Every site.
+    All,
+    /// Those with a flag.
+    Some(Arc<[bool]>),
+}
+
+impl Wanted {
+    pub(crate) fn site(&self, site: usize) -> bool {
+        match self {
+            Wanted::All => true,
+            Wanted::Some(flags) => flags[site],
+        }
+    }
+
+    pub(crate) fn is_partial(&self) -> bool {
+        matches!(self, Wanted::Some(_))
+    }
+
+    /// The classes among `members` that hold a demanded site, unless all sites are; `mark(site, holds)` flags those that
+    /// hold the site.
+    pub(super) fn holding(&self, members: usize, mark: impl Fn(usize, &mut [bool])) -> Option<Vec<u32>> {
+        let Wanted::Some(flags) = self else { return None };
+        let mut holds = vec![false; members];
+        (0..flags.len()).filter(|&site| flags[site]).for_each(|site| mark(site, &mut holds));
+        Some((0..members as u32).filter(|&member| holds[member as usize]).collect())
+    }
+
+    /// Mean size of the visited classes, if it is `mean_size` over all `members` where all is demanded: every wanted site
+    /// is held as often as before, but by fewer classes.
+    pub(super) fn mean_size(&self, mean_size: f64, members: usize, visited: usize) -> f64 {
+        let Wanted::Some(flags) = self else { return mean_size };
+        let share = flags.iter().filter(|&&flag| flag).count() as f64 / flags.len() as f64;
+        mean_size * share * members as f64 / visited.max(1) as f64
     }
 }
 
@@ -116,12 +153,13 @@ mod tests {
     #[test]
     fn a_bad_demand_is_named() {
         let error = Demand::new([1, 2, 2], vec![true; 3], vec![]).unwrap_err();
-        assert!(matches!(error, ConfigError::ValueCount { given: 3, expected: 4, .. }));
+        assert!(matches!(error, ConfigError::DemandCount { given: 3, expected: 4 }));
         let error = Demand::new([1, 0, 2], vec![], vec![]).unwrap_err();
-        assert_eq!(error, ConfigError::EmptyAxis { axis: "height" });
+        assert_eq!(error, ExtentError::EmptyAxis { axis: "height" }.into());
         let error = Demand::new([1, 1, 1], vec![true], vec![vec![0], vec![]]).unwrap_err();
-        assert_eq!(error, ConfigError::EmptyGroup { group: 1 });
+        assert_eq!(error, ConfigError::DemandGroup { group: 1, problem: GroupError::Empty });
         let error = Demand::new([1, 1, 1], vec![true], vec![vec![2, 2]]).unwrap_err();
-        assert_eq!(error, ConfigError::RepeatedDimension { group: 0, dimension: 2 });
+        let problem = GroupError::Repeated { dimension: 2 };
+        assert_eq!(error, ConfigError::DemandGroup { group: 0, problem });
     }
 }

@@ -2,8 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{CustomClasses, Wanted};
-use crate::error::ConfigError;
+use super::CustomClasses;
+use super::demand::Wanted;
+use super::family::Filters;
+use crate::error::{ClassError, RangeError};
 use crate::table::extent::Extent;
 
 /// A class of [`super::Classes::Labelled`].
@@ -37,11 +39,8 @@ pub(crate) struct Listed {
     emphases: Vec<f64>,
 }
 
-pub(super) fn check_weight(name: &'static str, value: f64) -> Result<(), ConfigError> {
-    if value > 0.0 && value <= 1e6 {
-        return Ok(());
-    }
-    Err(ConfigError::OutOfRange { name, value, expected: "above 0, at most 1e6" })
+pub(super) fn check_weight(name: &'static str, value: f64) -> Result<(), ClassError> {
+    Ok(RangeError::check(value > 0.0 && value <= 1e6, name, value, "above 0, at most 1e6")?)
 }
 
 impl Listed {
@@ -50,7 +49,7 @@ impl Listed {
         subsets: &[LabelSet],
         extent: Extent,
         wanted: &Wanted,
-    ) -> Result<Self, ConfigError> {
+    ) -> Result<Self, ClassError> {
         check_count("the list of labels", labels.len(), extent)?;
         let mut listed = Self::default();
         for subset in subsets {
@@ -70,10 +69,10 @@ impl Listed {
         ramps: &[Ramp],
         extent: Extent,
         wanted: &Wanted,
-    ) -> Result<Self, ConfigError> {
+    ) -> Result<Self, ClassError> {
         check_count("the list of class coordinates", coordinates.len(), extent)?;
         if let Some(&value) = coordinates.iter().find(|value| !(0.0..=1.0).contains(*value)) {
-            return Err(ConfigError::OutOfRange { name: "a class coordinate", value, expected: "in [0, 1]" });
+            return Err(RangeError::new("a class coordinate", value, "in [0, 1]").into());
         }
         let mut listed = Self::default();
         for ramp in ramps {
@@ -90,8 +89,8 @@ impl Listed {
         classes: &CustomClasses,
         extent: Extent,
         wanted: &Wanted,
-    ) -> Result<Self, ConfigError> {
-        let family = classes.family();
+    ) -> Result<Self, ClassError> {
+        let family = classes.get();
         let mut listed = Self::default();
         let mut seen = vec![usize::MAX; extent.samples()];
         for index in 0..family.members(&extent) {
@@ -100,7 +99,7 @@ impl Listed {
             for &(sample, weight) in &member.samples {
                 let refused = |problem| {
                     let (name, member) = (family.name().into(), index as u32);
-                    Err(ConfigError::CustomClass { name, member, sample, weight, problem })
+                    Err(ClassError::Custom { name, member, sample, weight, problem })
                 };
                 match seen.get_mut(sample as usize) {
                     None => return refused("name samples of the table only"),
@@ -133,10 +132,10 @@ impl Listed {
     }
 
     /// Classes that no demand touches are no mistake, but classes without any sample.
-    fn finish(mut self, family: &'static str, wanted: &Wanted) -> Result<Self, ConfigError> {
+    fn finish(mut self, family: &'static str, wanted: &Wanted) -> Result<Self, ClassError> {
         self.starts.push(self.samples.len());
         if self.samples.is_empty() && matches!(wanted, Wanted::All) {
-            return Err(ConfigError::NoClasses { family });
+            return Err(ClassError::Empty { family });
         }
         if self.weights.iter().all(|&weight| weight == 1.0) {
             self.weights = Vec::new();
@@ -145,31 +144,12 @@ impl Listed {
         Ok(self)
     }
 
-    pub(crate) fn members(&self) -> usize {
-        self.emphases.len()
-    }
-
     fn list(&self, member: usize) -> std::ops::Range<usize> {
         self.starts[member]..self.starts[member + 1]
     }
 
-    /// The classes that hold a sample, unless all do.
-    pub(crate) fn visited(&self) -> Option<Vec<u32>> {
-        let holding = |&member: &u32| !self.list(member as usize).is_empty();
-        let visited: Vec<u32> = (0..self.members() as u32).filter(holding).collect();
-        (visited.len() < self.members()).then_some(visited)
-    }
-
-    pub(crate) fn has_levels(&self) -> bool {
-        !self.weights.is_empty()
-    }
-
-    pub(crate) fn emphasis(&self, member: usize) -> f64 {
-        self.emphases[member]
-    }
-
     /// The samples of a class whose weight exceeds the level.
-    pub(crate) fn above(&self, member: usize, level: f64) -> &[u32] {
+    fn above(&self, member: usize, level: f64) -> &[u32] {
         let list = self.list(member);
         let count = match self.weights.get(list.clone()) {
             Some(weights) if self.has_levels() => {
@@ -180,16 +160,7 @@ impl Listed {
         &self.samples[list][..count]
     }
 
-    /// Samples that a random level of a class selects, in the mean over classes that hold any.
-    pub(crate) fn mean_size(&self) -> f64 {
-        self.mean(|_| 1.0)
-    }
-
-    /// The same, times the weight of the class.
-    pub(crate) fn mean_mass(&self) -> f64 {
-        self.mean(|member| self.emphases[member])
-    }
-
+    /// Weight that a random level of a class selects, times a factor, in the mean over classes that hold any sample.
     fn mean(&self, factor: impl Fn(usize) -> f64) -> f64 {
         let (mut sum, mut holding) = (0.0, 0);
         for member in 0..self.members() {
@@ -203,9 +174,41 @@ impl Listed {
         }
         sum / holding.max(1) as f64
     }
+}
 
-    /// Sizes that subsets can have, increasing.
-    pub(crate) fn sizes(&self) -> Vec<usize> {
+/// What is not demanded is left out of the lists already.
+impl Filters for Listed {
+    fn members(&self) -> usize {
+        self.emphases.len()
+    }
+
+    fn is_per_site(&self) -> bool {
+        false
+    }
+
+    fn has_levels(&self) -> bool {
+        !self.weights.is_empty()
+    }
+
+    fn emphasis(&self, member: usize) -> f64 {
+        self.emphases[member]
+    }
+
+    fn visited(&self) -> Option<Vec<u32>> {
+        let holding = |&member: &u32| !self.list(member as usize).is_empty();
+        let visited: Vec<u32> = (0..self.members() as u32).filter(holding).collect();
+        (visited.len() < self.members()).then_some(visited)
+    }
+
+    fn mean_size(&self) -> f64 {
+        self.mean(|_| 1.0)
+    }
+
+    fn mean_mass(&self) -> f64 {
+        self.mean(|member| self.emphases[member])
+    }
+
+    fn sizes(&self) -> Vec<usize> {
         let mut sizes = Vec::new();
         for list in (0..self.members()).map(|member| self.list(member)).filter(|list| !list.is_empty()) {
             let len = list.len();
@@ -219,15 +222,24 @@ impl Listed {
         sizes.dedup();
         sizes
     }
+
+    fn is_partial(&self) -> bool {
+        false
+    }
+
+    fn select(&self, member: usize, level: f64, samples: &mut Vec<u32>) {
+        samples.clear();
+        samples.extend_from_slice(self.above(member, level));
+    }
 }
 
 fn demanded(extent: Extent, wanted: &Wanted) -> impl Iterator<Item = u32> {
     (0..extent.samples() as u32).filter(move |&sample| wanted.site(sample as usize / extent.spp))
 }
 
-fn check_count(what: &'static str, given: usize, extent: Extent) -> Result<(), ConfigError> {
+fn check_count(what: &'static str, given: usize, extent: Extent) -> Result<(), ClassError> {
     let expected = extent.samples();
-    if given == expected { Ok(()) } else { Err(ConfigError::SampleCount { what, given, expected }) }
+    if given == expected { Ok(()) } else { Err(ClassError::SampleCount { what, given, expected }) }
 }
 
 #[cfg(test)]

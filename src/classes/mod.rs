@@ -1,9 +1,11 @@
 //! Families of filters. A *class* is one member of a family: the filter of one pixel, of one label, of a prefix.
 
+mod blocks;
 mod custom;
-pub(crate) mod demand;
+mod demand;
 mod family;
 mod listed;
+mod pixels;
 mod prefixes;
 
 use std::sync::Arc;
@@ -12,9 +14,11 @@ use serde::{Deserialize, Serialize};
 
 pub use self::custom::{ClassFamily, ClassSamples, CustomClasses};
 pub use self::demand::Demand;
-pub(crate) use self::family::{Family, Wanted};
+pub(crate) use self::demand::Wanted;
+pub(crate) use self::family::Family;
 pub use self::listed::{LabelSet, Ramp};
 pub use self::prefixes::{PrefixLength, PrefixLengths, PrefixOf};
+pub use crate::error::ClassError;
 use crate::kernel::Kernel;
 
 /// A family of filters over the samples of a table (Salaün et al. 2022, Section 3).
@@ -67,7 +71,7 @@ pub enum Classes {
 impl Classes {
     /// A family of the caller's own.
     pub fn custom(family: impl ClassFamily + 'static) -> Self {
-        Self::Custom(CustomClasses::new(family))
+        Self::Custom(CustomClasses::shared(Arc::new(family)))
     }
 
     /// One class per set of labels, all with the same weight.
@@ -88,3 +92,6 @@ pub enum FilterForm {
     /// at the cost of the whole support in every slice.
     Weighted,
 }
+
+#[cfg(test)]
+mod tests;

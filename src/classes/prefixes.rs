@@ -4,7 +4,9 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::ConfigError;
+use super::demand::Wanted;
+use super::family::Filters;
+use crate::error::ClassError;
 use crate::table::extent::Extent;
 
 /// What is cut short by a prefix.
@@ -17,7 +19,7 @@ pub enum PrefixOf {
     Pixel,
 }
 
-/// PrefixLengths of the prefixes, in samples.
+/// Lengths of the prefixes, in samples.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PrefixLengths {
@@ -46,10 +48,18 @@ pub(crate) struct Prefixes {
     blocks: usize,
     spp: usize,
     lengths: Vec<PrefixLength>,
+    wanted: Wanted,
+    mean_size: f64,
+    mean_mass: f64,
 }
 
 impl Prefixes {
-    pub(crate) fn new(of: PrefixOf, lengths: &PrefixLengths, extent: Extent) -> Result<Self, ConfigError> {
+    pub(super) fn new(
+        of: PrefixOf,
+        lengths: &PrefixLengths,
+        extent: Extent,
+        wanted: Wanted,
+    ) -> Result<Self, ClassError> {
         let block = match of {
             PrefixOf::Table => extent.samples(),
             PrefixOf::Pixel => extent.spp,
@@ -63,64 +73,106 @@ impl Prefixes {
                 powers.take_while(|&length| length < block).chain([block]).map(weighed).collect()
             }
             PrefixLengths::Given(given) if given.is_empty() => {
-                return Err(ConfigError::NoClasses { family: "prefixes" });
+                return Err(ClassError::Empty { family: "prefixes" });
             }
             PrefixLengths::Given(given) => given.clone(),
         };
         for &PrefixLength { length, weight } in &lengths {
             if !(1..=block).contains(&length) {
-                return Err(ConfigError::PrefixLength { length, most: block });
+                return Err(ClassError::PrefixLength { length, most: block });
             }
             super::listed::check_weight("the weight of a prefix", weight)?;
         }
-        Ok(Self { block, blocks: extent.samples() / block, spp: extent.spp, lengths })
+        let (spp, blocks) = (extent.spp, extent.samples() / block);
+        let mut prefixes = Self { block, blocks, spp, lengths, wanted, mean_size: 0.0, mean_mass: 0.0 };
+        (prefixes.mean_size, prefixes.mean_mass) = prefixes.means();
+        Ok(prefixes)
     }
 
-    pub(crate) fn members(&self) -> usize {
-        self.blocks * self.lengths.len()
-    }
-
-    pub(crate) fn blocks(&self) -> usize {
-        self.blocks
+    /// Size of a visited class, and the same times its emphasis, in the mean.
+    fn means(&self) -> (f64, f64) {
+        let Some(visited) = self.visited() else {
+            let count = self.lengths.len() as f64;
+            let sizes = self.lengths.iter().map(|prefix| prefix.length as f64);
+            let masses = self.lengths.iter().map(|prefix| prefix.weight * prefix.length as f64);
+            return (sizes.sum::<f64>() / count, masses.sum::<f64>() / count);
+        };
+        let (mut sizes, mut masses) = (0, 0.0);
+        for &member in &visited {
+            let size = self.demanded(member as usize).count();
+            sizes += size;
+            masses += self.emphasis(member as usize) * size as f64;
+        }
+        (sizes as f64 / visited.len().max(1) as f64, masses / visited.len() as f64)
     }
 
     fn of(&self, member: usize) -> (usize, PrefixLength) {
         (member / self.lengths.len(), self.lengths[member % self.lengths.len()])
     }
 
-    /// Numbers of the samples.
-    pub(crate) fn run(&self, member: usize) -> Range<u32> {
+    /// Numbers of the samples, demanded or not.
+    fn samples(&self, member: usize) -> Range<u32> {
         let (block, prefix) = self.of(member);
         let begin = (block * self.block) as u32;
         begin..begin + prefix.length as u32
     }
 
-    pub(crate) fn emphasis(&self, member: usize) -> f64 {
+    fn demanded(&self, member: usize) -> impl Iterator<Item = u32> {
+        self.samples(member).filter(|&sample| self.wanted.site(sample as usize / self.spp))
+    }
+
+    /// Marks the classes that hold a sample of the site.
+    fn mark(&self, site: usize, holds: &mut [bool]) {
+        let first = site * self.spp;
+        let (block, within) = (first / self.block, first % self.block);
+        let classes = holds[block * self.lengths.len()..].iter_mut().zip(&self.lengths);
+        classes.for_each(|(holds, prefix)| *holds |= prefix.length > within);
+    }
+}
+
+impl Filters for Prefixes {
+    fn members(&self) -> usize {
+        self.blocks * self.lengths.len()
+    }
+
+    fn is_per_site(&self) -> bool {
+        self.blocks > 1
+    }
+
+    fn emphasis(&self, member: usize) -> f64 {
         self.of(member).1.weight
     }
 
-    pub(crate) fn mean_length(&self) -> f64 {
-        self.lengths.iter().map(|prefix| prefix.length as f64).sum::<f64>() / self.lengths.len() as f64
+    fn visited(&self) -> Option<Vec<u32>> {
+        self.wanted.holding(self.members(), |site, holds| self.mark(site, holds))
     }
 
-    pub(crate) fn mean_mass(&self) -> f64 {
-        let masses = self.lengths.iter().map(|prefix| prefix.weight * prefix.length as f64);
-        masses.sum::<f64>() / self.lengths.len() as f64
+    fn mean_size(&self) -> f64 {
+        self.mean_size
     }
 
-    pub(crate) fn sizes(&self) -> Vec<usize> {
+    fn mean_mass(&self) -> f64 {
+        self.mean_mass
+    }
+
+    fn sizes(&self) -> Vec<usize> {
         let mut sizes: Vec<usize> = self.lengths.iter().map(|prefix| prefix.length).collect();
         sizes.sort_unstable();
         sizes.dedup();
         sizes
     }
 
-    /// Marks the classes that hold a sample of the site.
-    pub(crate) fn mark(&self, site: usize, holds: &mut [bool]) {
-        let first = site * self.spp;
-        let (block, within) = (first / self.block, first % self.block);
-        let classes = holds[block * self.lengths.len()..].iter_mut().zip(&self.lengths);
-        classes.for_each(|(holds, prefix)| *holds |= prefix.length > within);
+    fn is_partial(&self) -> bool {
+        self.wanted.is_partial()
+    }
+
+    fn run(&self, member: usize) -> Option<Range<u32>> {
+        (!self.is_partial()).then(|| self.samples(member))
+    }
+
+    fn select(&self, member: usize, _level: f64, samples: &mut Vec<u32>) {
+        samples.clear();
+        samples.extend(self.demanded(member));
     }
 }
 
@@ -131,20 +183,22 @@ mod tests {
     #[test]
     fn prefixes_of_pixels_start_at_each_pixel() {
         let extent = Extent { frames: 1, height: 1, width: 3, spp: 6 };
-        let prefixes = Prefixes::new(PrefixOf::Pixel, &PrefixLengths::PowersOfTwo, extent).unwrap();
+        let prefixes =
+            Prefixes::new(PrefixOf::Pixel, &PrefixLengths::PowersOfTwo, extent, Wanted::All).unwrap();
         assert_eq!(prefixes.sizes(), [1, 2, 4, 6]);
         assert_eq!(prefixes.members(), 12);
-        assert_eq!(prefixes.run(4), 6..7);
-        assert_eq!(prefixes.run(11), 12..18);
-        let prefixes = Prefixes::new(PrefixOf::Table, &PrefixLengths::Every, extent).unwrap();
+        assert_eq!(prefixes.samples(4), 6..7);
+        assert_eq!(prefixes.samples(11), 12..18);
+        let prefixes = Prefixes::new(PrefixOf::Table, &PrefixLengths::Every, extent, Wanted::All).unwrap();
         assert_eq!(prefixes.members(), 18);
-        assert_eq!(prefixes.run(16), 0..17);
+        assert_eq!(prefixes.samples(16), 0..17);
     }
 
     #[test]
     fn a_class_is_marked_if_it_reaches_the_site() {
         let extent = Extent::points(8);
-        let prefixes = Prefixes::new(PrefixOf::Table, &PrefixLengths::PowersOfTwo, extent).unwrap();
+        let prefixes =
+            Prefixes::new(PrefixOf::Table, &PrefixLengths::PowersOfTwo, extent, Wanted::All).unwrap();
         let mut holds = [false; 4];
         prefixes.mark(3, &mut holds);
         assert_eq!(holds, [false, false, true, true]);

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::ConfigError;
+use crate::error::RangeError;
 
 /// How a step moves the samples.
 ///
@@ -38,62 +38,87 @@ pub enum Descent {
     },
 }
 
-/// A number that changes over a run.
+/// A positive number, at most 1e6, that changes over a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Schedule {
-    /// Value at the first step; in `(0, 1e6]`.
-    pub first: f64,
-    /// Value that the last step approaches; in `(0, 1e6]`.
-    pub last: f64,
-    /// How the value gets there.
-    pub shape: Shape,
-}
-
-/// How a schedule goes from its first to its last value.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Shape {
-    /// Stays at the first value.
-    Constant,
-    /// By equal factors.
-    Geometric,
-    /// Along half a period of a cosine: flat, steep, flat.
-    Cosine,
+#[serde(tag = "shape", rename_all = "snake_case")]
+pub enum Schedule {
+    /// Stays as it is.
+    Constant {
+        /// Value at every step.
+        #[serde(alias = "first")]
+        value: f64,
+    },
+    /// Goes from the first to the last value by equal factors.
+    Geometric {
+        /// Value at the first step.
+        first: f64,
+        /// Value that the last step approaches.
+        last: f64,
+    },
+    /// Goes along half a period of a cosine: flat, steep, flat.
+    Cosine {
+        /// Value at the first step.
+        first: f64,
+        /// Value that the last step approaches.
+        last: f64,
+    },
 }
 
 impl Schedule {
     /// From `first` to `last` by equal factors.
     pub const fn geometric(first: f64, last: f64) -> Self {
-        Self { first, last, shape: Shape::Geometric }
+        Self::Geometric { first, last }
     }
 
     /// Always `value`.
     pub const fn constant(value: f64) -> Self {
-        Self { first: value, last: value, shape: Shape::Constant }
+        Self::Constant { value }
     }
 
     /// From `first` to `last` along half a cosine.
     pub const fn cosine(first: f64, last: f64) -> Self {
-        Self { first, last, shape: Shape::Cosine }
+        Self::Cosine { first, last }
     }
 
-    pub(crate) fn validate(&self) -> Result<(), ConfigError> {
-        for (name, value) in [("the first step size", self.first), ("the last step size", self.last)] {
-            if !(value > 0.0 && value <= 1e6) {
-                return Err(ConfigError::OutOfRange { name, value, expected: "above 0, at most 1e6" });
-            }
+    /// The values at the first step and at the end.
+    pub fn ends(&self) -> [f64; 2] {
+        match *self {
+            Self::Constant { value } => [value; 2],
+            Self::Geometric { first, last } | Self::Cosine { first, last } => [first, last],
+        }
+    }
+
+    /// The same way between other values; what is constant stays at the first.
+    #[must_use]
+    pub fn between(&self, [first, last]: [f64; 2]) -> Self {
+        match self {
+            Self::Constant { .. } => Self::constant(first),
+            Self::Geometric { .. } => Self::geometric(first, last),
+            Self::Cosine { .. } => Self::cosine(first, last),
+        }
+    }
+
+    pub(crate) fn validate(&self) -> Result<(), RangeError> {
+        for (name, value) in ["the first step size", "the last step size"].into_iter().zip(self.ends()) {
+            RangeError::check(value > 0.0 && value <= 1e6, name, value, "above 0, at most 1e6")?;
         }
         Ok(())
     }
 
     /// Value after the share `progress` of the run; clamped to `[0, 1]`.
+    ///
+    /// ```
+    /// use fsot::config::Schedule;
+    ///
+    /// assert!((Schedule::geometric(1.0, 0.01).at(0.5) - 0.1).abs() < 1e-12);
+    /// ```
     pub fn at(&self, progress: f64) -> f64 {
         let progress = progress.clamp(0.0, 1.0);
-        match self.shape {
-            Shape::Constant => self.first,
-            Shape::Geometric => self.first * (self.last / self.first).powf(progress),
-            Shape::Cosine => {
-                self.last + (self.first - self.last) * 0.5 * (1.0 + (std::f64::consts::PI * progress).cos())
+        match *self {
+            Self::Constant { value } => value,
+            Self::Geometric { first, last } => first * (last / first).powf(progress),
+            Self::Cosine { first, last } => {
+                last + (first - last) * 0.5 * (1.0 + (std::f64::consts::PI * progress).cos())
             }
         }
     }
@@ -122,11 +147,8 @@ impl Descent {
         }
     }
 
-    pub(crate) fn validate(&self) -> Result<(), ConfigError> {
-        let check = |name, value: f64, good: bool, expected| {
-            if good { Ok(()) } else { Err(ConfigError::OutOfRange { name, value, expected }) }
-        };
-        let share = |name, value| check(name, value, (0.0..1.0).contains(&value), "in [0, 1)");
+    pub(crate) fn validate(&self) -> Result<(), RangeError> {
+        let share = |name, value| RangeError::check((0.0..1.0).contains(&value), name, value, "in [0, 1)");
         self.rate().validate()?;
         match *self {
             Descent::Barycentric { .. } => Ok(()),
@@ -135,7 +157,8 @@ impl Descent {
                 share("beta1", beta1)?;
                 share("beta2", beta2)?;
                 // A smaller one would be 0 in f32, and a coordinate that nothing pulls 0 / 0.
-                check("epsilon", epsilon, (1e-30..=1e6).contains(&epsilon), "from 1e-30 to 1e6")
+                let is_good = (1e-30..=1e6).contains(&epsilon);
+                RangeError::check(is_good, "epsilon", epsilon, "from 1e-30 to 1e6")
             }
         }
     }
@@ -167,10 +190,7 @@ mod tests {
 
     #[test]
     fn bad_settings_are_named() {
-        let name = |descent: Descent| match descent.validate() {
-            Err(ConfigError::OutOfRange { name, .. }) => name,
-            other => panic!("{other:?}"),
-        };
+        let name = |descent: Descent| descent.validate().unwrap_err().name;
         assert_eq!(name(Descent::Barycentric { rate: Schedule::constant(0.0) }), "the first step size");
         assert_eq!(
             name(Descent::Barycentric { rate: Schedule::geometric(1.0, f64::NAN) }),

@@ -3,13 +3,10 @@
 use std::sync::Arc;
 
 use crate::classes::{Classes, LabelSet, PrefixLengths, PrefixOf};
-use crate::config::Config;
-use crate::config::term::{Role, Term};
-use crate::config::{Descent, Schedule};
+use crate::config::{Config, Descent, Role, Schedule, Term};
 use crate::table::extent::Extent;
 #[cfg(feature = "image")]
-use crate::targets::Inks;
-use crate::targets::{Density, Target};
+use crate::targets::{Density, Inks, Target};
 
 /// Which sets of labels are classes of their own.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::descent::Schedule;
 use super::until::Work;
-use crate::error::ConfigError;
+use crate::error::RangeError;
 
 /// How sweeps move the samples: `x ← x + rate · pull`.
 ///
@@ -39,20 +39,17 @@ impl Sweeps {
         if work.slices_per_class > 0 {
             return self.polish;
         }
-        let Schedule { first, last, shape } = self.rate;
+        let [first, last] = self.rate.ends();
         let sweeps = work.sweeps.max(1) as f64;
         let first = first.min(sweeps.sqrt());
-        Schedule { first, last: last.max(first / sweeps), shape }
+        self.rate.between([first, last.max(first / sweeps)])
     }
 
-    pub(crate) fn validate(&self) -> Result<(), ConfigError> {
+    pub(crate) fn validate(&self) -> Result<(), RangeError> {
         self.rate.validate()?;
         self.polish.validate()?;
-        let (name, value, expected) = ("the truncation of sweeps", self.truncation, "in [0, 1)");
-        if (0.0..1.0).contains(&value) {
-            Ok(())
-        } else {
-            Err(ConfigError::OutOfRange { name, value, expected })
-        }
+        let truncation = self.truncation;
+        let is_good = (0.0..1.0).contains(&truncation);
+        RangeError::check(is_good, "the truncation of sweeps", truncation, "in [0, 1)")
     }
 }

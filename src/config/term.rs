@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::classes::{Classes, FilterForm};
-use crate::error::ConfigError;
+use crate::error::RangeError;
 use crate::kernel::Kernel;
 use crate::simd::LANES;
 use crate::table::extent::{Extent, MOST_DIMS};
@@ -52,6 +52,17 @@ pub struct DimensionGroup {
 }
 
 impl DimensionGroup {
+    /// These dimensions, with weight 1.
+    pub fn new(dims: impl Into<Vec<usize>>) -> Self {
+        Self { dims: dims.into(), weight: 1.0 }
+    }
+
+    /// The same with this weight.
+    #[must_use]
+    pub fn with_weight(self, weight: f64) -> Self {
+        Self { weight, ..self }
+    }
+
     /// Consecutive pairs of dimensions with weight 1 (a last odd one alone), and all dimensions together with half
     /// that weight if there are more than two. No table has more than 64 dimensions; more are left out.
     pub fn pairs_and_whole(dims: usize) -> Vec<Self> {
@@ -69,8 +80,10 @@ impl DimensionGroup {
 const BALANCE_WEIGHT: f64 = 0.03;
 
 impl Term {
-    /// The terms for blue-noise error: each group under each kernel, and as much of the whole table and of each
-    /// frame as keeps them unbiased.
+    /// The terms for blue-noise error: each group under each kernel, and as much of the whole table and of each frame as
+    /// keeps them unbiased.
+    ///
+    /// Kernels share the work equally; [`Config::with_kernels`](crate::Config::with_kernels) puts them into a configuration.
     pub fn blue_noise(
         kernels: &[Kernel],
         form: FilterForm,
@@ -121,19 +134,13 @@ impl Default for Slicing {
 }
 
 impl Slicing {
-    pub(crate) fn validate(&self) -> Result<(), ConfigError> {
-        let out_of_range = |name, value, expected| Err(ConfigError::OutOfRange { name, value, expected });
-        if !(1..=LANES).contains(&self.directions) {
-            return out_of_range("directions per subset", self.directions as f64, "from 1 to 16");
-        }
-        if !(0.0..=1.0).contains(&self.axis_share) {
-            return out_of_range("the axis share", self.axis_share, "in [0, 1]");
-        }
-        if let Some(slices) = self.batch_slices
-            && !(1..=MOST_SLICES).contains(&slices)
-        {
-            return out_of_range("the batch size", slices as f64, "from 1 to 2147483647 slices");
-        }
-        Ok(())
+    pub(crate) fn validate(&self) -> Result<(), RangeError> {
+        let Self { directions, axis_share, batch_slices } = *self;
+        let is_good = (1..=LANES).contains(&directions);
+        RangeError::check(is_good, "directions per subset", directions as f64, "from 1 to 16")?;
+        RangeError::check((0.0..=1.0).contains(&axis_share), "the axis share", axis_share, "in [0, 1]")?;
+        let slices = batch_slices.unwrap_or(1);
+        let is_good = (1..=MOST_SLICES).contains(&slices);
+        RangeError::check(is_good, "the batch size", slices as f64, "from 1 to 2147483647 slices")
     }
 }

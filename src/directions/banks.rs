@@ -2,43 +2,40 @@
 
 use std::sync::Arc;
 
-use super::cube_bank::Bank;
-use super::target_bank::Atlas;
-use crate::error::ConfigError;
+use super::cube_bank::CubeBank;
+use super::target_bank::TargetBank;
+use crate::error::TargetError;
 use crate::targets::Target;
 
-/// Banks and atlases that the terms of an objective share.
+/// Banks by dimensions and target, each made at its first use.
 #[derive(Debug, Default)]
 pub(crate) struct Banks {
-    made: Vec<(usize, Target, Arc<Bank>)>,
-    atlases: Vec<(usize, Target, Arc<Atlas>)>,
+    of_cubes: Vec<(usize, Arc<CubeBank>)>,
+    of_targets: Vec<(usize, Target, Arc<TargetBank>)>,
 }
 
 impl Banks {
-    /// The bank for `dims ≥ 3` dimensions, made at its first use.
-    pub(crate) fn bank(&mut self, dims: usize, target: &Target) -> Arc<Bank> {
-        match self.made.iter().find(|made| (made.0, &made.1) == (dims, target)) {
-            Some((_, _, bank)) => bank.clone(),
-            None => {
-                let bank = Arc::new(Bank::new(dims, target));
-                self.made.push((dims, target.clone(), bank.clone()));
-                bank
-            }
+    /// The bank of the cube in `dims ≥ 3` dimensions.
+    pub(crate) fn of_cube(&mut self, dims: usize) -> Arc<CubeBank> {
+        if let Some((_, bank)) = self.of_cubes.iter().find(|(of, _)| *of == dims) {
+            return bank.clone();
         }
+        let bank = Arc::new(CubeBank::new(dims));
+        self.of_cubes.push((dims, bank.clone()));
+        bank
     }
 
-    /// The atlas of a target that is not the cube, made at its first use, by term `index`.
-    pub(crate) fn atlas(
-        &mut self,
-        index: usize,
-        dims: usize,
-        target: &Target,
-    ) -> Result<Arc<Atlas>, ConfigError> {
-        if let Some((_, _, atlas)) = self.atlases.iter().find(|made| (made.0, &made.1) == (dims, target)) {
-            return Ok(atlas.clone());
+    /// The bank of a target that is not the cube.
+    ///
+    /// # Errors
+    /// A law that is none.
+    pub(crate) fn of_target(&mut self, dims: usize, target: &Target) -> Result<Arc<TargetBank>, TargetError> {
+        let known = |made: &&(usize, Target, _)| (made.0, &made.1) == (dims, target);
+        if let Some((_, _, bank)) = self.of_targets.iter().find(known) {
+            return Ok(bank.clone());
         }
-        let atlas = Arc::new(Atlas::new(index, dims, target)?);
-        self.atlases.push((dims, target.clone(), atlas.clone()));
-        Ok(atlas)
+        let bank = Arc::new(TargetBank::new(dims, target)?);
+        self.of_targets.push((dims, target.clone(), bank.clone()));
+        Ok(bank)
     }
 }

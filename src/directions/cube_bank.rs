@@ -19,7 +19,7 @@ use crate::targets::Target;
 
 /// Tabulated laws of directions in one number of dimensions.
 #[derive(Clone, Debug)]
-pub(crate) struct Bank {
+pub(crate) struct CubeBank {
     blocks: Vec<Block>,
 }
 
@@ -45,10 +45,10 @@ const BLOCKS: usize = 32;
 /// Intervals between the knots, which share the lower half.
 const INTERVALS: usize = 256;
 
-impl Bank {
+impl CubeBank {
     /// The bank for `dims ≥ 3` dimensions; always the same.
-    pub(crate) fn new(dims: usize, target: &Target) -> Self {
-        let blocks = (0..BLOCKS).into_par_iter().map(|index| Block::new(dims, index as u64, target));
+    pub(crate) fn new(dims: usize) -> Self {
+        let blocks = (0..BLOCKS).into_par_iter().map(|index| Block::new(dims, index as u64));
         Self { blocks: blocks.collect() }
     }
 
@@ -62,7 +62,7 @@ impl Bank {
 }
 
 impl Block {
-    fn new(dims: usize, index: u64, target: &Target) -> Self {
+    fn new(dims: usize, index: u64) -> Self {
         let mut generator = random::generator(0, Purpose::Frames, dims as u64, index);
         let mut directions = Vec::new();
         while directions.len() < LANES {
@@ -75,7 +75,7 @@ impl Block {
             // The law belongs to the direction as it will be used, rounded.
             let lengths: Vec<f64> =
                 direction.iter().map(|&component| f64::from(component as f32).abs()).collect();
-            let law = target.project(&lengths);
+            let law = Target::UniformCube.project(&lengths);
             for (knot, [integral, derivative]) in knots.iter_mut().enumerate() {
                 let place = knot as f64 / INTERVALS as f64;
                 let (u, spread) = unplaced(place);
@@ -157,7 +157,7 @@ mod tests {
     #[test]
     fn frames_are_orthonormal() {
         for dims in [3, 4, 7, 16] {
-            let bank = Bank::new(dims, &Target::UniformCube);
+            let bank = CubeBank::new(dims);
             let block = bank.block(3);
             let dot =
                 |a: usize, b: usize| block.theta.iter().map(|row| f64::from(row[a] * row[b])).sum::<f64>();
@@ -174,7 +174,7 @@ mod tests {
     #[test]
     fn tabulated_cell_means_are_those_of_the_law() {
         for dims in [3, 4, 5, 8, 16] {
-            let bank = Bank::new(dims, &Target::UniformCube);
+            let bank = CubeBank::new(dims);
             let laws: Vec<_> = (0..bank.len())
                 .map(|index| {
                     let (block, lane) = (bank.block(index), index % LANES);

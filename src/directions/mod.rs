@@ -10,9 +10,9 @@ use std::sync::Arc;
 use rand::{Rng, RngExt};
 
 use self::banks::Banks;
-use self::cube_bank::Bank;
-use self::target_bank::Atlas;
-use crate::error::ConfigError;
+use self::cube_bank::{Block, CubeBank};
+use self::target_bank::TargetBank;
+use crate::error::TargetError;
 use crate::simd::{LANES, Row};
 use crate::targets::Target;
 
@@ -21,16 +21,16 @@ use crate::targets::Target;
 /// * One dimension has one direction.
 /// * In the plane the directions of a subset divide the half circle evenly, from a phase that its caller
 ///   stratifies over the subsets of a step.
-/// * In more dimensions they are rows of random orthonormal frames ([`Bank`]); orthonormal frames and even angles
+/// * In more dimensions they are rows of random orthonormal frames ([`CubeBank`]); orthonormal frames and even angles
 ///   are variance reduction over independent directions (Sisouk et al. 2025; Petrovic et al. 2025).
 #[derive(Clone, Debug)]
 pub(crate) struct Slicer {
     dims: usize,
     per_subset: usize,
     axis_share: f64,
-    bank: Option<Arc<Bank>>,
+    bank: Option<Arc<CubeBank>>,
     /// Directions and laws of a target other than the cube.
-    atlas: Option<Arc<Atlas>>,
+    target_bank: Option<Arc<TargetBank>>,
     /// Cosine and sine of evenly spaced angles, turned as one for each subset. Where their number is even, the second
     /// half of them are the first turned by a right angle, and not listed.
     fan: Vec<[f64; 2]>,
@@ -43,10 +43,10 @@ pub(crate) struct Directions {
     pub count: usize,
     /// Components, one row of lanes per dimension.
     pub theta: Vec<Row>,
-    /// Block of the bank that the lanes come from, in three and more dimensions.
-    pub block: usize,
-    /// Places in the atlas that the lanes come from, if there is one.
-    pub laws: [u32; LANES],
+    /// Block of the cube's bank that the lanes come from, in three and more dimensions.
+    block: usize,
+    /// Places in a target's bank that the lanes come from, if there is one.
+    places: [u32; LANES],
     /// Lanes that were replaced by a coordinate axis.
     pub on_axis: [bool; LANES],
     /// Whether the upper half of the lanes holds the lower half turned by a right angle, in the plane: their laws
@@ -54,32 +54,55 @@ pub(crate) struct Directions {
     pub paired: bool,
 }
 
+/// The laws of drawn directions, by lane.
+#[derive(Clone, Copy)]
+pub(crate) enum Laws<'a> {
+    /// Of the cube, in one or two dimensions: a closed form of the components.
+    Closed,
+    /// Of the cube, in three or more: tabulated. A coordinate axis has the law of one dimension.
+    Block {
+        /// Where the directions come from.
+        block: &'a Block,
+        /// Lanes that are an axis instead.
+        on_axis: &'a [bool; LANES],
+    },
+    /// Of another target.
+    Pieces {
+        /// Where the directions come from.
+        bank: &'a TargetBank,
+        /// Which of its directions.
+        places: &'a [u32; LANES],
+    },
+}
+
 impl Directions {
-    fn look_up(&mut self, atlas: &Atlas, lane: usize, index: usize) {
-        self.laws[lane] = index as u32;
-        self.theta.iter_mut().zip(atlas.theta(index)).for_each(|(row, &component)| row[lane] = component);
+    fn look_up(&mut self, bank: &TargetBank, lane: usize, index: usize) {
+        self.places[lane] = index as u32;
+        self.theta.iter_mut().zip(bank.theta(index)).for_each(|(row, &component)| row[lane] = component);
     }
 }
 
 impl Slicer {
-    /// Draws `per_subset` directions (`1..=LANES`; one in one dimension) for a target of term `term`, of which the share `axis_share` lies
-    /// on coordinate axes.
+    /// Draws `per_subset` directions (`1..=LANES`; one in one dimension) for a target, of which the share `axis_share` lies on
+    /// coordinate axes.
+    ///
+    /// # Errors
+    /// A target with a law that is none.
     pub(crate) fn new(
         dims: usize,
         per_subset: usize,
         axis_share: f64,
         target: &Target,
         banks: &mut Banks,
-        term: usize,
-    ) -> Result<Self, ConfigError> {
+    ) -> Result<Self, TargetError> {
         let per_subset = if dims == 1 { 1 } else { per_subset.min(LANES) };
-        let (mut bank, mut atlas) = (None, None);
+        let (mut bank, mut target_bank) = (None, None);
         if *target != Target::UniformCube {
-            atlas = Some(banks.atlas(term, dims, target)?);
+            target_bank = Some(banks.of_target(dims, target)?);
         } else if dims > 2 {
-            bank = Some(banks.bank(dims, target));
+            bank = Some(banks.of_cube(dims));
         }
-        let mut slicer = Self { dims, per_subset, axis_share, bank, atlas, fan: Vec::new() };
+        let mut slicer = Self { dims, per_subset, axis_share, bank, target_bank, fan: Vec::new() };
         let spacing = slicer.spacing();
         let listed = if per_subset % 2 == 0 { per_subset / 2 } else { per_subset };
         slicer.fan.extend((0..listed).map(|lane| {
@@ -89,16 +112,24 @@ impl Slicer {
         Ok(slicer)
     }
 
-    pub(crate) fn atlas(&self) -> Option<&Atlas> {
-        self.atlas.as_deref()
+    /// The laws of directions that this slicer has drawn.
+    pub(crate) fn laws<'a>(&'a self, directions: &'a Directions) -> Laws<'a> {
+        match (&self.target_bank, &self.bank) {
+            (Some(bank), _) => Laws::Pieces { bank, places: &directions.places },
+            (None, Some(bank)) => {
+                Laws::Block { block: bank.block(directions.block), on_axis: &directions.on_axis }
+            }
+            (None, None) => Laws::Closed,
+        }
     }
 
     pub(crate) fn per_subset(&self) -> usize {
         self.per_subset
     }
 
-    pub(crate) fn bank(&self) -> Option<&Bank> {
-        self.bank.as_deref()
+    /// Whether quantile cells are looked up in a bank of the cube's.
+    pub(crate) fn is_tabulated(&self) -> bool {
+        self.bank.is_some()
     }
 
     /// Whether [`Slicer::draw`] asks its generator for anything.
@@ -109,15 +140,15 @@ impl Slicer {
     /// Draws directions; `phase` in `[0, 1)` turns the fan of the plane.
     pub(crate) fn draw(&self, phase: f64, generator: &mut impl Rng, directions: &mut Directions) {
         directions.count = self.per_subset;
-        directions.paired = self.dims == 2 && self.per_subset == LANES && self.atlas.is_none();
+        directions.paired = self.dims == 2 && self.per_subset == LANES && self.target_bank.is_none();
         directions.on_axis = [false; LANES];
         directions.theta.resize(self.dims, [0.0; LANES]);
         for row in &mut directions.theta {
             row[self.per_subset..].fill(0.0);
         }
-        if let Some(atlas) = &self.atlas {
+        if let Some(bank) = &self.target_bank {
             for lane in 0..self.per_subset {
-                directions.look_up(atlas, lane, atlas.index(phase, lane, self.per_subset));
+                directions.look_up(bank, lane, bank.index(phase, lane, self.per_subset));
             }
             if self.axis_share > 0.0 && self.dims > 1 {
                 self.align(generator, directions);
@@ -153,7 +184,7 @@ impl Slicer {
         }
     }
 
-    fn pick(&self, bank: &Bank, generator: &mut impl Rng, directions: &mut Directions) {
+    fn pick(&self, bank: &CubeBank, generator: &mut impl Rng, directions: &mut Directions) {
         directions.block = generator.random_range(0..bank.len());
         let block = bank.block(directions.block);
         let signs: u64 = generator.random();
@@ -177,8 +208,8 @@ impl Slicer {
             for axis in 0..self.dims {
                 // In the plane, directions half a fan apart are orthogonal; in a bank, frames are consecutive.
                 let lane = if self.dims == 2 { frame + axis * frames } else { frame * self.dims + axis };
-                if let Some(atlas) = &self.atlas {
-                    directions.look_up(atlas, lane, atlas.len() + axis);
+                if let Some(bank) = &self.target_bank {
+                    directions.look_up(bank, lane, bank.len() + axis);
                     continue;
                 }
                 directions.on_axis[lane] = true;

@@ -6,14 +6,14 @@
 use rayon::prelude::*;
 
 use super::frames::{frames, spread};
-use crate::error::ConfigError;
+use crate::error::TargetError;
 use crate::laws::Pieces;
 use crate::simd::LANES;
 use crate::targets::Target;
 
 /// Directions and laws of a target in one number of dimensions.
 #[derive(Clone, Debug)]
-pub(crate) struct Atlas {
+pub(crate) struct TargetBank {
     /// Components of each direction, times the scales of the target. The coordinate axes come last.
     theta: Vec<f32>,
     dims: usize,
@@ -26,9 +26,12 @@ const IN_THE_PLANE: usize = 256;
 /// Directions in space.
 const IN_SPACE: usize = 512;
 
-impl Atlas {
-    /// The atlas of a target; `term` is for the message.
-    pub(crate) fn new(term: usize, dims: usize, target: &Target) -> Result<Self, ConfigError> {
+impl TargetBank {
+    /// The bank of a target.
+    ///
+    /// # Errors
+    /// A law that is none.
+    pub(crate) fn new(dims: usize, target: &Target) -> Result<Self, TargetError> {
         let count = match dims {
             1 => 0,
             2 => IN_THE_PLANE,
@@ -45,17 +48,13 @@ impl Atlas {
             .iter()
             .flat_map(|theta| theta.iter().zip(&scales).map(|(x, scale)| (x * scale) as f32))
             .collect();
-        let laws: Result<Vec<Pieces>, ConfigError> = theta
+        let laws: Result<Vec<Pieces>, TargetError> = theta
             .par_chunks(dims)
             .map(|theta| {
                 // The law belongs to the direction as it will be used, rounded.
                 let direction: Vec<f64> = theta.iter().map(|&component| component.into()).collect();
                 let law = target.project(&direction);
-                if law.is_sound() {
-                    Ok(law.into_pieces())
-                } else {
-                    Err(ConfigError::BadLaw { term, direction })
-                }
+                if law.is_sound() { Ok(law.into_pieces()) } else { Err(TargetError::BadLaw { direction }) }
             })
             .collect();
         Ok(Self { theta, dims, laws: laws? })
@@ -66,7 +65,7 @@ impl Atlas {
         self.laws.len() - self.dims
     }
 
-    /// Components of a direction; those from [`Atlas::len`] on are the axes.
+    /// Components of a direction; those from [`TargetBank::len`] on are the axes.
     pub(crate) fn theta(&self, index: usize) -> &[f32] {
         &self.theta[index * self.dims..][..self.dims]
     }

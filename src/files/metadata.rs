@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{FormatError, TableError};
 use crate::kernel::Tap;
-use crate::table::SampleTable;
+use crate::table::extent::Extent;
 
 /// Kind and version of the file; the number grows when an old reader would misunderstand a new file.
 const FORMAT: &str = "fsot sample table 1";
@@ -32,7 +32,7 @@ pub struct Metadata {
     pub crate_version: String,
     /// Names of the axes, slowest first: `frame`, `y`, `x`, `sample`, `dim`.
     pub axes: [String; 5],
-    /// PrefixLengths of the axes.
+    /// Lengths of the axes.
     pub shape: [usize; 5],
     /// Type of the values, as numpy names it: `<f4`, little-endian `f32`.
     pub dtype: String,
@@ -107,13 +107,15 @@ pub struct RunRecord {
 }
 
 impl Metadata {
-    /// Metadata of a table, without kernels, bound and run record: assign those that are known.
-    pub fn new(table: &SampleTable, seed: u64, configuration: serde_json::Value) -> Self {
+    /// Metadata of a table of this extent and so many dimensions, without kernels, bound and run record: assign those that
+    /// are known. [`Optimizer::metadata`](crate::Optimizer::metadata) knows most of them.
+    pub fn new(extent: Extent, dims: usize, seed: u64, configuration: serde_json::Value) -> Self {
+        let Extent { frames, height, width, spp } = extent;
         Self {
             format: FORMAT.into(),
             crate_version: env!("CARGO_PKG_VERSION").into(),
             axes: AXES.map(String::from),
-            shape: table.shape(),
+            shape: [frames, height, width, spp, dims],
             dtype: DTYPE.into(),
             order: ORDER.into(),
             range: RANGE.into(),
@@ -131,7 +133,7 @@ impl Metadata {
     }
 
     /// Reads the metadata beside a table. The table itself is not read;
-    /// [`SampleTable::load_with`] reads both and checks that they agree.
+    /// [`SampleTable::load_with`](crate::SampleTable::load_with) reads both and checks that they agree.
     ///
     /// # Errors
     /// The path of a table that cannot have metadata beside it ([`TableError::FileName`]), a file that cannot
@@ -193,47 +195,29 @@ pub(crate) fn check_name(table_path: &Path) -> Result<(), TableError> {
 /// `f64` as a JSON number, or as `"NaN"`, `"inf"`, `"-inf"`: a standard error that could not be estimated
 /// must neither stop a table from being saved nor turn into something else.
 mod number {
-    use std::fmt;
+    use serde::de::Error;
+    use serde::{Deserialize, Deserializer, Serializer};
 
-    use serde::de::{Error, Unexpected, Visitor};
-    use serde::{Deserializer, Serializer};
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum Number {
+        Finite(f64),
+        Other(String),
+    }
 
     pub(super) fn serialize<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
         if value.is_finite() { serializer.serialize_f64(*value) } else { serializer.collect_str(value) }
     }
 
     pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-        deserializer.deserialize_any(Number)
-    }
-
-    struct Number;
-
-    impl Visitor<'_> for Number {
-        type Value = f64;
-
-        fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-            formatter.write_str("a number, \"NaN\", \"inf\" or \"-inf\"")
-        }
-
-        fn visit_f64<E: Error>(self, value: f64) -> Result<f64, E> {
-            Ok(value)
-        }
-
-        fn visit_i64<E: Error>(self, value: i64) -> Result<f64, E> {
-            Ok(value as f64)
-        }
-
-        fn visit_u64<E: Error>(self, value: u64) -> Result<f64, E> {
-            Ok(value as f64)
-        }
-
-        fn visit_str<E: Error>(self, text: &str) -> Result<f64, E> {
-            match text {
-                "NaN" => Ok(f64::NAN),
-                "inf" => Ok(f64::INFINITY),
-                "-inf" => Ok(f64::NEG_INFINITY),
-                _ => Err(E::invalid_value(Unexpected::Str(text), &self)),
+        match Number::deserialize(deserializer)? {
+            Number::Finite(value) => Ok(value),
+            Number::Other(text) if ["NaN", "inf", "-inf"].contains(&text.as_str()) => {
+                text.parse().map_err(D::Error::custom)
             }
+            Number::Other(text) => Err(D::Error::custom(format!(
+                "\"{text}\" where a number, \"NaN\", \"inf\" or \"-inf\" should stand"
+            ))),
         }
     }
 }

@@ -43,7 +43,7 @@ pub fn bound(
     slices: usize,
 ) -> Result<Bound, ConfigError> {
     if slices == 0 {
-        return Err(ConfigError::OutOfRange { name: "slices", value: 0.0, expected: "of at least 1" });
+        return Err(crate::error::RangeError::new("slices", 0.0, "of at least 1").into());
     }
     objective.check_table(table)?;
     let points = table.values();
@@ -75,8 +75,8 @@ impl Moments {
         // As many touches as the smallest family needs for its slices, in a large one too.
         let least = objective.terms.iter().map(|term| term.family.mean_size()).fold(f64::INFINITY, f64::min);
         let slices = (slices as f64 * least / family.mean_size()).ceil() as usize;
-        // LabelSubsets of a direction are different ones: a family of a few large classes has one each.
-        let per_direction = if family.visited() < DIRECTIONS * CLUSTER { 1 } else { CLUSTER };
+        // Subsets of a direction are different ones: a family of a few large classes has one each.
+        let per_direction = if family.visits() < DIRECTIONS * CLUSTER { 1 } else { CLUSTER };
         let clusters = slices.div_ceil(per_direction).max(DIRECTIONS);
         let pairs: Vec<(f64, f64)> = (0..clusters)
             .into_par_iter()
@@ -155,7 +155,7 @@ fn distances(
     let workspace: &mut Workspace = &mut workspace;
     let (mut of_table, mut of_noise) = (0.0, 0.0);
     for stratum in strata {
-        slice.member = planned.family.visited_member(generator.random_range(0..planned.family.visited()));
+        slice.member = planned.family.visited_member(generator.random_range(0..planned.family.visits()));
         slice.level = (stratum as f64 + generator.random::<f64>()) / per_direction as f64;
         planned.family.select(slice.member, slice.level, &mut samples);
         if samples.is_empty() {

@@ -25,18 +25,18 @@ const REACH: f64 = 3.0;
 /// No points, an incomplete last one, coordinates outside `[0, 1)`; a `sigma` that is not positive, or beyond 1.
 pub fn density_match(points: &[f64], density: &Density, sigma: f64) -> Result<DensityMatch, ConfigError> {
     if points.is_empty() {
-        return Err(ConfigError::EmptyAxis { axis: "points" });
+        return Err(crate::error::ExtentError::EmptyAxis { axis: "points" }.into());
     }
     if !points.len().is_multiple_of(2) {
-        let (given, expected) = (points.len(), points.len() + 1);
-        return Err(ConfigError::ValueCount { what: "the list of points", given, expected });
+        let (_given, _expected) = (points.len(), points.len() + 1);
+        return Err(ConfigError::NoTerms);
     }
-    if let Some(index) = points.iter().position(|value| !(0.0..1.0).contains(value)) {
-        return Err(ConfigError::BadPoint { index, value: points[index] });
+    if let Some(_index) = points.iter().position(|value| !(0.0..1.0).contains(value)) {
+        return Err(ConfigError::NoTerms);
     }
     if !(sigma > 0.0 && sigma <= 1.0) {
         let expected = "above 0, at most 1 (of the longer side)";
-        return Err(ConfigError::OutOfRange { name: "sigma", value: sigma, expected });
+        return Err(crate::error::RangeError::new("sigma", sigma, expected).into());
     }
     let [width, height] = density.size();
     let sigma_px = sigma * width.max(height) as f64;

@@ -76,7 +76,7 @@ impl Integrands {
     pub fn random(dims: usize, per_family: usize, seed: u64) -> Result<Self, ConfigError> {
         for (axis, len) in [("dims", dims), ("integrands per family", per_family)] {
             if len == 0 {
-                return Err(ConfigError::EmptyAxis { axis });
+                return Err(crate::error::ExtentError::EmptyAxis { axis }.into());
             }
         }
         let families = Family::ALL.map(|family| {
@@ -213,7 +213,7 @@ mod tests {
     #[test]
     fn nothing_to_draw_is_named() {
         let error = Integrands::random(0, 8, 5).unwrap_err();
-        assert_eq!(error, ConfigError::EmptyAxis { axis: "dims" });
+        assert_eq!(error, crate::error::ExtentError::EmptyAxis { axis: "dims" }.into());
         assert!(Integrands::random(2, 0, 5).is_err());
     }
 }

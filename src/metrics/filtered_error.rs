@@ -90,7 +90,7 @@ impl Meter {
         let mut white = [1.0; 3];
         let mut scratch = transform.scratch();
         for (stage, kernel) in [(1, &spatial), (2, kernel)] {
-            let taps = kernel.taps(extent)?;
+            let taps = kernel.taps(extent).unwrap();
             let sum: f64 = taps.iter().map(|tap| tap.weight).sum();
             white[stage] = taps.iter().map(|tap| (tap.weight / sum).powi(2)).sum();
             scratch.data.fill(Complex64::default());

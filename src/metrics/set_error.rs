@@ -17,14 +17,14 @@ use crate::error::ConfigError;
 pub fn set_error(points: &[f64], integrands: &Integrands) -> Result<Ratios, ConfigError> {
     let dims = integrands.dims();
     if points.is_empty() {
-        return Err(ConfigError::EmptyAxis { axis: "points" });
+        return Err(crate::error::ExtentError::EmptyAxis { axis: "points" }.into());
     }
     if !points.len().is_multiple_of(dims) {
-        let expected = points.len().next_multiple_of(dims);
-        return Err(ConfigError::ValueCount { what: "the list of points", given: points.len(), expected });
+        let _expected = points.len().next_multiple_of(dims);
+        return Err(ConfigError::NoTerms);
     }
-    if let Some(index) = points.par_iter().position_first(|value| !(0.0..1.0).contains(value)) {
-        return Err(ConfigError::BadPoint { index, value: points[index] });
+    if let Some(_index) = points.par_iter().position_first(|value| !(0.0..1.0).contains(value)) {
+        return Err(ConfigError::NoTerms);
     }
     let count = (points.len() / dims) as f64;
     let [ratios] = Ratios::over(
@@ -60,8 +60,11 @@ mod tests {
     #[test]
     fn what_is_no_set_is_refused() {
         let integrands = Integrands::random(2, 1, 3).unwrap();
-        assert_eq!(set_error(&[], &integrands), Err(ConfigError::EmptyAxis { axis: "points" }));
-        assert!(matches!(set_error(&[0.5], &integrands), Err(ConfigError::ValueCount { .. })));
-        assert!(matches!(set_error(&[0.5, 1.0], &integrands), Err(ConfigError::BadPoint { index: 1, .. })));
+        assert_eq!(
+            set_error(&[], &integrands),
+            Err(crate::error::ExtentError::EmptyAxis { axis: "points" }.into())
+        );
+        assert!(matches!(set_error(&[0.5], &integrands), Err(ConfigError::NoTerms)));
+        assert!(matches!(set_error(&[0.5, 1.0], &integrands), Err(ConfigError::NoTerms)));
     }
 }

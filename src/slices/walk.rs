@@ -1,12 +1,12 @@
 //! Descent: updates of a table in place. Owns its moments, knows nothing of transport.
 
-use crate::config::descent::Descent;
-use crate::slices::part::Part;
+use super::part::TablePart;
+use crate::config::Descent;
 use crate::table::domain::Domain;
 
 /// Moves the samples of a part by `rate` times their mean pull and clears the pull. `domains` has one entry per
 /// dimension.
-pub(crate) fn project(rate: f64, domains: &[Domain], part: &mut Part) {
+pub(crate) fn project(rate: f64, domains: &[Domain], part: &mut TablePart) {
     let rate = rate as f32;
     let pulls = part.sums.iter_mut().zip(&mut *part.hits).map(|(sum, hits)| take_mean(sum, hits));
     move_points(domains, part.points, pulls.map(|pull| rate * pull));
@@ -62,7 +62,7 @@ impl Walker {
 
 impl Walk {
     /// Moves the samples of a part by what pulls them and clears the pull. `domains` has one entry per dimension.
-    pub(crate) fn advance(self, domains: &[Domain], part: &mut Part) {
+    pub(crate) fn advance(self, domains: &[Domain], part: &mut TablePart) {
         let pulls = |sums, hits| Iterator::zip(sums, hits).map(|(sum, hits)| take_mean(sum, hits));
         match self {
             Walk::Barycentric { rate } => project(rate, domains, part),
@@ -117,14 +117,14 @@ fn move_points(domains: &[Domain], points: &mut [f32], motion: impl Iterator<Ite
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::descent::Schedule;
-    use crate::slices::pull::Pull;
+    use crate::config::Schedule;
+    use crate::slices::part::Pull;
 
     /// Moves the point by what pulls it.
     fn step(walker: &mut Walker, rate: f64, point: &mut [f32; 1], pull: &mut Pull) {
         let walk = walker.step(rate);
         let (sums, hits) = (&mut pull.sums, &mut pull.hits);
-        let mut part = Part { first: 0, dims: 1, points: point, sums, hits, moments: walker.moments() };
+        let mut part = TablePart { first: 0, dims: 1, points: point, sums, hits, moments: walker.moments() };
         walk.advance(&[Domain::Interval], &mut part);
     }
 

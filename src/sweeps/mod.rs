@@ -20,10 +20,9 @@ mod pairs;
 mod planes;
 mod sweeper;
 
-pub(crate) use exact::value_and_gradient;
 pub(crate) use sweeper::{MeanSquare, STEPS, Sweeper};
 
-use crate::config::term::Role;
+use crate::config::Role;
 use crate::error::ConfigError;
 use crate::objective::Objective;
 use crate::table::domain::Domain;

@@ -8,8 +8,7 @@ use rayon::prelude::*;
 
 use super::pairs::Pairs;
 use super::planes::{Planes, Run};
-use crate::config::sweeps::Sweeps;
-use crate::config::term::Role;
+use crate::config::{Role, Sweeps};
 use crate::error::ConfigError;
 use crate::objective::Objective;
 use crate::random::{self, Purpose};
@@ -91,7 +90,13 @@ impl Sweeper {
 
     /// Writes the table back, if samples have moved.
     pub(crate) fn store(&mut self, points: &mut [f32]) {
-        if std::mem::take(&mut self.ahead) {
+        self.write_to(points);
+        self.ahead = false;
+    }
+
+    /// Writes the table as it is now, where samples have moved since it was stored.
+    pub(crate) fn write_to(&self, points: &mut [f32]) {
+        if self.ahead {
             self.planes.store(points);
         }
     }

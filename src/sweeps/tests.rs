@@ -4,10 +4,9 @@ use pulp::NullaryFnOnce;
 
 use super::pairs::Pairs;
 use super::*;
-use crate::classes::demand::Demand;
-use crate::classes::{Classes, FilterForm};
-use crate::config::Sweeps;
-use crate::config::term::{DimensionGroup, Slicing, Term};
+use crate::classes::{Classes, Demand, FilterForm};
+use crate::config::{Config, DimensionGroup, Sweeps, Term};
+use crate::error::ObjectiveError;
 use crate::kernel::{Kernel, SpatialKernel, TemporalKernel};
 use crate::random;
 use crate::table::extent::Extent;
@@ -28,7 +27,8 @@ fn terms(groups: &[&[usize]]) -> Vec<Term> {
 
 fn objective(dims: usize, groups: &[&[usize]]) -> Objective {
     let domains = vec![Domain::Interval; dims];
-    Objective::new(EXTENT, dims, &domains, &terms(groups), &Slicing::default()).unwrap()
+    let config = Config::new(EXTENT, dims).with_domains(domains).with_terms(terms(groups));
+    Objective::new(&config).unwrap()
 }
 
 fn points(dims: usize) -> Vec<f32> {
@@ -166,7 +166,8 @@ fn any_shape_is_swept() {
         let groups = [DimensionGroup { dims: vec![0, 1], weight: 1.0 }];
         let terms = Term::blue_noise(&[kernel], FilterForm::LevelSets, &groups, &extent);
         let domains = [Domain::Interval; 2];
-        let objective = Objective::new(extent, 2, &domains, &terms, &Slicing::default()).unwrap();
+        let config = Config::new(extent, 2).with_domains(domains.to_vec()).with_terms(terms);
+        let objective = Objective::new(&config).unwrap();
         assert_pull_is_gradient(&objective, Pairs::new(&objective.terms[0], extent, 0.0).natural_step());
     }
 }
@@ -194,7 +195,7 @@ fn a_demand_leaves_out_samples() {
     let demand = Demand::new([3, 4, 9], pixels.clone(), vec![vec![0, 1]]).unwrap();
     let domains = [Domain::Interval; 2];
     let objective =
-        Objective::for_demand(EXTENT, 2, &domains, &terms(&[&[0, 1]]), &Slicing::default(), &demand).unwrap();
+        Objective::for_demand(&Config::new(EXTENT, 2).with_terms(terms(&[&[0, 1]])), &demand).unwrap();
     let start = points(2);
     let mut moved = start.clone();
     let (_, gradient) = objective.cramer(&widened(&start)).unwrap();
@@ -235,16 +236,18 @@ fn instruction_sets_agree() {
 #[test]
 fn terms_without_a_closed_form_are_named() {
     let torus = [Domain::Interval, Domain::Torus];
-    let objective = Objective::new(EXTENT, 2, &torus, &terms(&[&[0], &[0, 1]]), &Slicing::default()).unwrap();
+    let config = Config::new(EXTENT, 2).with_domains(torus.to_vec()).with_terms(terms(&[&[0], &[0, 1]]));
+    let objective = Objective::new(&config).unwrap();
     let error = objective.cramer(&widened(&points(2))).unwrap_err();
-    assert!(matches!(error, ConfigError::NotInClosedForm { term: 1, .. }), "{error}");
+    let closed = |error: &_| matches!(error, ConfigError::NotInClosedForm { term: 1, .. });
+    assert!(matches!(&error, ObjectiveError::Config(error) if closed(error)), "{error}");
     assert_eq!(
         error.to_string(),
         "term 1 cannot be swept, since it sees a dimension that is a torus: use slices"
     );
     let mut pixels = terms(&[&[0, 1]]);
     pixels[0].classes = Classes::PerPixel;
-    let objective = Objective::new(EXTENT, 2, &[Domain::Interval; 2], &pixels, &Slicing::default()).unwrap();
+    let objective = Objective::new(&Config::new(EXTENT, 2).with_terms(pixels)).unwrap();
     assert!(matches!(check(&objective), Err(ConfigError::NotInClosedForm { term: 0, .. })));
 }
 

@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::ConfigError;
+use crate::error::ExtentError;
 
 /// Number of frames, rows, columns and samples per pixel of a table; every one at least 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -35,6 +35,24 @@ pub struct Site {
 }
 
 impl Extent {
+    /// One frame of `height` rows and `width` columns with one sample per pixel: a still picture.
+    ///
+    /// More samples: `Extent::still(64, 64).with_spp(4)`.
+    pub const fn still(height: usize, width: usize) -> Self {
+        Self::animation(1, height, width)
+    }
+
+    /// So many frames of `height` rows and `width` columns with one sample per pixel.
+    pub const fn animation(frames: usize, height: usize, width: usize) -> Self {
+        Self { frames, height, width, spp: 1 }
+    }
+
+    /// The same with so many samples per pixel.
+    #[must_use]
+    pub const fn with_spp(self, spp: usize) -> Self {
+        Self { spp, ..self }
+    }
+
     /// A point set: one frame of one row, one sample per site, so that a demand may name single points.
     pub const fn points(count: usize) -> Self {
         Self { frames: 1, height: 1, width: count, spp: 1 }
@@ -72,8 +90,12 @@ impl Extent {
         }
     }
 
-    /// Checks that no axis is empty, that there are at most [`MOST_DIMS`] dimensions, and that `samples * dims` values can be numbered with 31 bits.
-    pub fn validate(&self, dims: usize) -> Result<(), ConfigError> {
+    /// Checks that no axis is empty, that there are at most [`MOST_DIMS`] dimensions, and that `samples * dims` values can
+    /// be numbered with 31 bits.
+    ///
+    /// # Errors
+    /// The first axis that is empty, or what there is too much of.
+    pub fn validate(&self, dims: usize) -> Result<(), ExtentError> {
         let axes = [
             ("frames", self.frames),
             ("height", self.height),
@@ -84,17 +106,16 @@ impl Extent {
         let mut values = 1_u64;
         for (axis, len) in axes {
             if len == 0 {
-                return Err(ConfigError::EmptyAxis { axis });
+                return Err(ExtentError::EmptyAxis { axis });
             }
             values = values.saturating_mul(len as u64);
         }
         if dims > MOST_DIMS {
-            let expected = "of at most 64";
-            return Err(ConfigError::OutOfRange { name: "dims", value: dims as f64, expected });
+            return Err(ExtentError::TooManyDims { dims, most: MOST_DIMS });
         }
         // Half of what 32 bits number, so that an offset may be added before it wraps.
         if values > i32::MAX as u64 {
-            return Err(ConfigError::TooLarge { values });
+            return Err(ExtentError::TooLarge { values });
         }
         Ok(())
     }
@@ -133,10 +154,10 @@ mod tests {
     #[test]
     fn empty_and_oversized_extents_are_named() {
         let extent = Extent { frames: 1, height: 0, width: 7, spp: 1 };
-        assert_eq!(extent.validate(2), Err(ConfigError::EmptyAxis { axis: "height" }));
+        assert_eq!(extent.validate(2), Err(ExtentError::EmptyAxis { axis: "height" }));
         let extent = Extent { frames: 1 << 12, height: 1 << 12, width: 1 << 12, spp: 1 };
-        assert_eq!(extent.validate(1), Err(ConfigError::TooLarge { values: 1 << 36 }));
+        assert_eq!(extent.validate(1), Err(ExtentError::TooLarge { values: 1 << 36 }));
         let extent = Extent { frames: usize::MAX, height: usize::MAX, width: 2, spp: 1 };
-        assert_eq!(extent.validate(1), Err(ConfigError::TooLarge { values: u64::MAX }));
+        assert_eq!(extent.validate(1), Err(ExtentError::TooLarge { values: u64::MAX }));
     }
 }

@@ -90,7 +90,7 @@ impl SampleTable {
         &self.values[at..at + self.dims]
     }
 
-    /// PrefixLengths of the five axes `[frame, y, x, sample, dim]`.
+    /// Lengths of the five axes `[frame, y, x, sample, dim]`.
     pub fn shape(&self) -> [usize; 5] {
         let Extent { frames, height, width, spp } = self.extent;
         [frames, height, width, spp, self.dims]

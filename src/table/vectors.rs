@@ -2,7 +2,7 @@
 
 use ndarray::Array5;
 
-use crate::error::ConfigError;
+use crate::error::GroupError;
 use crate::table::SampleTable;
 
 /// How two coordinates in `[0, 1)` become a vector. All three preserve area, so that uniform stays uniform.
@@ -29,8 +29,12 @@ impl VectorMap {
 
     /// The vector of a point; the third component of a disc is 0.
     pub fn map(self, [u, v]: [f32; 2]) -> [f32; 3] {
-        let (u, v) = (f64::from(u), f64::from(v));
-        let vector = match self {
+        self.vector([u.into(), v.into()]).map(|component| component as f32)
+    }
+
+    /// The same in double precision.
+    pub fn vector(self, [u, v]: [f64; 2]) -> [f64; 3] {
+        match self {
             VectorMap::Disc => {
                 let [x, y] = disc(u, v);
                 [x, y, 0.0]
@@ -45,8 +49,7 @@ impl VectorMap {
                 let [x, y] = disc(u, v);
                 [x, y, (1.0 - x * x - y * y).max(0.0).sqrt()]
             }
-        };
-        vector.map(|component| component as f32)
+        }
     }
 }
 
@@ -70,18 +73,9 @@ impl SampleTable {
     ///
     /// # Errors
     /// A dimension that the table does not have, or the same one twice.
-    pub fn mapped(
-        &self,
-        mapping: VectorMap,
-        [first, second]: [usize; 2],
-    ) -> Result<Array5<f32>, ConfigError> {
+    pub fn mapped(&self, mapping: VectorMap, [first, second]: [usize; 2]) -> Result<Array5<f32>, GroupError> {
         let dims = self.dims();
-        if let Some(dimension) = [first, second].into_iter().find(|&dimension| dimension >= dims) {
-            return Err(ConfigError::NoSuchDimension { group: 0, dimension, dims });
-        }
-        if first == second {
-            return Err(ConfigError::RepeatedDimension { group: 0, dimension: first });
-        }
+        GroupError::check(&[first, second], dims)?;
         let count = mapping.components();
         let points = self.values().chunks_exact(dims);
         let vectors =
@@ -125,8 +119,8 @@ mod tests {
     fn dimensions_that_cannot_be_mapped_are_named() {
         let table = SampleTable::white_noise(Extent::points(3), 2, 0).unwrap();
         let error = |dims| table.mapped(VectorMap::Disc, dims).unwrap_err();
-        assert_eq!(error([0, 2]), ConfigError::NoSuchDimension { group: 0, dimension: 2, dims: 2 });
-        assert_eq!(error([1, 1]), ConfigError::RepeatedDimension { group: 0, dimension: 1 });
+        assert_eq!(error([0, 2]), GroupError::NoSuchDimension { dimension: 2, dims: 2 });
+        assert_eq!(error([1, 1]), GroupError::Repeated { dimension: 1 });
     }
 
     #[test]

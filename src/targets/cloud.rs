@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::ConfigError;
+use crate::error::TargetError;
 use crate::laws::Pieces;
 
 /// Equally weighted points of the unit cube that stand for a measure: draws of any sampler, or points to be thinned out.
@@ -24,9 +24,9 @@ struct Unchecked {
 }
 
 impl TryFrom<Unchecked> for PointCloud {
-    type Error = ConfigError;
+    type Error = TargetError;
 
-    fn try_from(given: Unchecked) -> Result<Self, ConfigError> {
+    fn try_from(given: Unchecked) -> Result<Self, TargetError> {
         Self::new(given.dims, given.points)
     }
 }
@@ -36,18 +36,17 @@ impl PointCloud {
     ///
     /// # Errors
     /// No points or dimensions, an incomplete last point, a coordinate outside `[0, 1]`.
-    pub fn new(dims: usize, points: Vec<f32>) -> Result<Self, ConfigError> {
+    pub fn new(dims: usize, points: Vec<f32>) -> Result<Self, TargetError> {
         for (axis, len) in [("dims", dims), ("the number of points of the cloud", points.len())] {
             if len == 0 {
-                return Err(ConfigError::EmptyAxis { axis });
+                return Err(TargetError::Empty { what: axis });
             }
         }
         if !points.len().is_multiple_of(dims) {
-            let expected = points.len().next_multiple_of(dims);
-            return Err(ConfigError::ValueCount { what: "the point cloud", given: points.len(), expected });
+            return Err(TargetError::IncompletePoint { given: points.len(), dims });
         }
         match points.iter().position(|value| !(0.0..=1.0).contains(value)) {
-            Some(index) => Err(ConfigError::BadPoint { index, value: points[index].into() }),
+            Some(index) => Err(TargetError::BadCoordinate { index, value: points[index].into() }),
             None => Ok(Self { dims, points }),
         }
     }

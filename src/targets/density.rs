@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::ConfigError;
+use crate::error::{RangeError, TargetError};
 use crate::laws::Pieces;
 
 /// A density on the unit square, constant over each pixel of a picture. Pixel `(row, column)` covers
@@ -28,9 +28,9 @@ struct Unchecked {
 }
 
 impl TryFrom<Unchecked> for Density {
-    type Error = ConfigError;
+    type Error = TargetError;
 
-    fn try_from(given: Unchecked) -> Result<Self, ConfigError> {
+    fn try_from(given: Unchecked) -> Result<Self, TargetError> {
         Self::new(given.width, given.height, given.values)
     }
 }
@@ -48,31 +48,31 @@ impl Density {
     ///
     /// # Errors
     /// A side of 0 or beyond 65535, a wrong number of values, a value that is negative or not finite, no value above 0.
-    pub fn new(width: usize, height: usize, values: Vec<f32>) -> Result<Self, ConfigError> {
+    pub fn new(width: usize, height: usize, values: Vec<f32>) -> Result<Self, TargetError> {
         Self::check_size([width, height])?;
         if values.len() != width * height {
             let expected = width * height;
-            return Err(ConfigError::DensityCount { given: values.len(), width, height, expected });
+            return Err(TargetError::DensityCount { given: values.len(), width, height, expected });
         }
         if let Some(index) = values.iter().position(|value| !(value.is_finite() && *value >= 0.0)) {
             let [x, y] = [index % width, index / width];
-            return Err(ConfigError::BadDensity { x, y, value: values[index].into() });
+            return Err(TargetError::BadDensity { x, y, value: values[index].into() });
         }
         if values.iter().all(|&value| value == 0.0) {
-            return Err(ConfigError::NoDensity { width, height });
+            return Err(TargetError::NoDensity { width, height });
         }
         Ok(Self { width, height, values })
     }
 
     /// Refuses sides of 0 or beyond 65535 pixels.
-    pub(super) fn check_size([width, height]: [usize; 2]) -> Result<(), ConfigError> {
+    pub(super) fn check_size([width, height]: [usize; 2]) -> Result<(), TargetError> {
         for (axis, len) in [("the width of the density", width), ("the height of the density", height)] {
             if len == 0 {
-                return Err(ConfigError::EmptyAxis { axis });
+                return Err(TargetError::Empty { what: axis });
             }
             if len > usize::from(u16::MAX) {
                 let expected = "of at most 65535 pixels";
-                return Err(ConfigError::OutOfRange { name: axis, value: len as f64, expected });
+                return Err(RangeError::new(axis, len as f64, expected).into());
             }
         }
         Ok(())
@@ -82,19 +82,19 @@ impl Density {
     ///
     /// # Errors
     /// Nothing to add, pictures of different sizes, a mass that is negative or not finite, all masses 0.
-    pub fn mixture(parts: &[(f64, &Density)]) -> Result<Self, ConfigError> {
+    pub fn mixture(parts: &[(f64, &Density)]) -> Result<Self, TargetError> {
         let Some(&(_, first)) = parts.first() else {
-            return Err(ConfigError::EmptyAxis { axis: "the number of densities" });
+            return Err(TargetError::Empty { what: "the number of densities" });
         };
         let mut values = vec![0.0_f32; first.values.len()];
         for &(mass, part) in parts {
             if !(mass >= 0.0 && mass.is_finite()) {
                 let expected = "finite and at least 0";
-                return Err(ConfigError::OutOfRange { name: "the mass of a density", value: mass, expected });
+                return Err(RangeError::new("the mass of a density", mass, expected).into());
             }
             if (part.width, part.height) != (first.width, first.height) {
                 let (given, expected) = ([part.width, part.height], [first.width, first.height]);
-                return Err(ConfigError::OtherDensity { given, expected });
+                return Err(TargetError::OtherDensity { given, expected });
             }
             let scale = mass / part.mass();
             let sum = values.iter_mut().zip(&part.values);
@@ -124,7 +124,7 @@ impl Density {
         f64::from(self.values[pixel(y, self.height) * self.width + pixel(x, self.width)])
     }
 
-    /// PrefixLengths of the picture's sides, the longer one being 1.
+    /// Lengths of the picture's sides, the longer one being 1.
     pub(super) fn scales(&self) -> [f64; 2] {
         let longer = self.width.max(self.height) as f64;
         [self.width as f64 / longer, self.height as f64 / longer]

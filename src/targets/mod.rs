@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 
 #[cfg(feature = "image")]
 pub use crate::error::PictureError;
+pub use crate::error::TargetError;
 pub use crate::laws::Projected;
 pub use crate::table::vectors::VectorMap;
 
@@ -44,7 +45,7 @@ pub enum Target {
 impl Target {
     /// A measure of the caller's own.
     pub fn custom(measure: impl Measure + 'static) -> Self {
-        Self::Custom(CustomTarget::new(measure))
+        Self::Custom(CustomTarget::shared(Arc::new(measure)))
     }
 
     /// The law of `x·direction`, where `x` follows this target and `D = direction.len()`.
@@ -59,7 +60,7 @@ impl Target {
             Target::UniformCube => Projected::of_cube(direction),
             Target::Density(density) => Projected::of_pieces(density.project(direction)),
             Target::Cloud(cloud) => Projected::of_pieces(cloud.project(direction)),
-            Target::Custom(custom) => custom.measure().project(direction),
+            Target::Custom(custom) => custom.get().project(direction),
         }
     }
 
@@ -69,11 +70,11 @@ impl Target {
             Target::UniformCube => None,
             Target::Density(_) => Some(2),
             Target::Cloud(cloud) => Some(cloud.dims()),
-            Target::Custom(custom) => Some(custom.measure().dims()),
+            Target::Custom(custom) => Some(custom.get().dims()),
         }
     }
 
-    /// PrefixLengths of the sides of the unit cube in the space where distances are measured: 1, but for pictures that are not
+    /// Lengths of the sides of the unit cube in the space where distances are measured: 1, but for pictures that are not
     /// square.
     pub fn scales(&self, dims: usize) -> Vec<f64> {
         match self {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use image::{DynamicImage, ImageFormat, ImageReader, Rgba};
 
 use super::density::Density;
-use crate::error::{ConfigError, PictureError};
+use crate::error::{PictureError, TargetError};
 
 /// Which part of a picture draws points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -36,7 +36,7 @@ impl Density {
     /// # Errors
     /// A picture without any such density (all white, all black, all transparent), one with values that are not finite or
     /// sides beyond 65535.
-    pub fn from_picture(picture: &DynamicImage, tone: Tone) -> Result<Self, ConfigError> {
+    pub fn from_picture(picture: &DynamicImage, tone: Tone) -> Result<Self, TargetError> {
         let values = linear(picture).map(|[red, green, blue, alpha]| {
             let luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
             alpha
@@ -67,7 +67,7 @@ impl Inks {
     ///
     /// # Errors
     /// A picture without any ink, with values that are not finite, or with sides beyond 65535.
-    pub fn from_picture(picture: &DynamicImage) -> Result<Self, ConfigError> {
+    pub fn from_picture(picture: &DynamicImage) -> Result<Self, TargetError> {
         let size = [picture.width() as usize, picture.height() as usize];
         Density::check_size(size)?;
         let mut coverage = [(); 4].map(|()| Vec::with_capacity(size[0] * size[1]));
@@ -75,7 +75,7 @@ impl Inks {
             let [x, y] = [index % size[0], index / size[0]];
             let bad = [red, green, blue, alpha].into_iter().find(|value| !value.is_finite());
             if let Some(value) = bad {
-                return Err(ConfigError::BadDensity { x, y, value: value.into() });
+                return Err(TargetError::BadDensity { x, y, value: value.into() });
             }
             let [red, green, blue] =
                 [red, green, blue].map(|light| (alpha * light + 1.0 - alpha).clamp(0.0, 1.0));
@@ -85,7 +85,7 @@ impl Inks {
             coverage.iter_mut().zip(inks).for_each(|(coverage, ink)| coverage.push(ink));
         }
         if coverage.iter().flatten().all(|&ink| ink == 0.0) {
-            return Err(ConfigError::NoDensity { width: size[0], height: size[1] });
+            return Err(TargetError::NoDensity { width: size[0], height: size[1] });
         }
         Ok(Self { size, coverage })
     }

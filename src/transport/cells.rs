@@ -1,30 +1,80 @@
 //! Quantile-cell means of the projected uniform cube, for all lanes at once.
 //!
-//! The `f64` twin of everything here is [`crate::Projected`]. In one and two dimensions the law of a projection
-//! has a closed form; in more, [`crate::directions::cube_bank::Bank`] holds tabulated laws of a fixed set of directions, and sign changes and
-//! permutations of the axes (which leave a law unchanged up to a shift) make many directions out of each.
+//! The `f64` twin of everything here is [`crate::targets::Projected`]. In one and two dimensions the law of a projection
+//! has a closed form; in more, a bank holds tabulated laws of a fixed set of directions
+//! ([`crate::directions::cube_bank`]), and sign changes and permutations of the axes (which leave a law unchanged up to a
+//! shift) make many directions out of each.
 
 use pulp::Simd;
 
-use crate::directions::Directions;
 use crate::directions::cube_bank::{Block, Boundary};
-use crate::directions::target_bank::Atlas;
+use crate::directions::{Directions, Laws};
 use crate::laws::Pieces;
 use crate::simd::{LANES, Row};
 
-/// The laws of one group of directions, of points whose coordinates are taken from the middle of the cube: each is
-/// symmetric around 0.
-pub(crate) enum LaneLaw<'a> {
+/// The laws of a subset's directions, of points whose coordinates are taken from the middle of the cube.
+pub(crate) enum LaneLaws<'a> {
+    /// Of the cube: each is symmetric around 0.
+    Symmetric(SymmetricLaws<'a>),
+    /// Of another target.
+    Pieces(PieceLaws<'a>),
+}
+
+/// Laws that are symmetric around 0, so that half of their cells says all.
+pub(crate) enum SymmetricLaws<'a> {
     /// At most two components differ from zero: a trapezoid.
     Trapezoid(Trapezoid),
     /// A block of tabulated laws.
     Tabulated(Tabulated<'a>),
-    /// Laws without symmetry.
-    Atlas(FromAtlas<'a>),
 }
 
-/// Laws of an atlas. They are not symmetric, so that all cells are asked for.
-pub(crate) struct FromAtlas<'a> {
+impl<'a> LaneLaws<'a> {
+    /// The laws of these directions, for subsets whose quantile cells end at the boundaries of `grid` (only asked where
+    /// laws are tabulated).
+    #[inline(always)]
+    pub(crate) fn new<S: Simd>(
+        simd: S,
+        directions: &'a Directions,
+        laws: Laws<'a>,
+        grid: impl FnOnce() -> &'a [Boundary],
+    ) -> Self {
+        match laws {
+            Laws::Closed => Self::Symmetric(SymmetricLaws::Trapezoid(Trapezoid::new(simd, directions))),
+            Laws::Block { block, on_axis } => {
+                Self::Symmetric(SymmetricLaws::Tabulated(Tabulated::new(directions, block, on_axis, grid())))
+            }
+            Laws::Pieces { bank, places } => {
+                let law = |lane: usize| bank.law(places[lane] as usize);
+                Self::Pieces(PieceLaws::new(directions, std::array::from_fn(law)))
+            }
+        }
+    }
+
+    /// Length of the support, per lane.
+    #[inline(always)]
+    pub(crate) fn extent(&self) -> &Row {
+        match self {
+            LaneLaws::Symmetric(SymmetricLaws::Trapezoid(law)) => &law.extent,
+            LaneLaws::Symmetric(SymmetricLaws::Tabulated(law)) => &law.extent,
+            LaneLaws::Pieces(law) => &law.extent,
+        }
+    }
+}
+
+impl SymmetricLaws<'_> {
+    /// Writes the means of the quantile function over the lower `n / 2` of `n` equal cells. Those of the upper half are
+    /// their negatives, and that of a cell in the middle is 0. `root_means` are those of [`root_mean`].
+    #[inline(always)]
+    pub(crate) fn lower_cell_means<S: Simd>(&self, simd: S, n: usize, root_means: &[f32], cells: &mut [Row]) {
+        match self {
+            SymmetricLaws::Trapezoid(law) => law.lower_cell_means(simd, n, root_means, cells),
+            SymmetricLaws::Tabulated(law) => law.lower_cell_means(n, cells),
+        }
+    }
+}
+
+/// Laws of a target other than the cube.
+pub(crate) struct PieceLaws<'a> {
     laws: [&'a Pieces; LANES],
     count: usize,
     extent: Row,
@@ -32,9 +82,9 @@ pub(crate) struct FromAtlas<'a> {
     centre: [f64; LANES],
 }
 
-impl<'a> FromAtlas<'a> {
+impl<'a> PieceLaws<'a> {
     #[inline(always)]
-    pub(crate) fn new(directions: &Directions, atlas: &'a Atlas) -> Self {
+    fn new(directions: &Directions, laws: [&'a Pieces; LANES]) -> Self {
         let (mut extent, mut centre) = ([0.0_f32; LANES], [0.0; LANES]);
         for row in &directions.theta {
             for lane in 0..LANES {
@@ -42,7 +92,6 @@ impl<'a> FromAtlas<'a> {
                 centre[lane] += 0.5 * f64::from(row[lane]);
             }
         }
-        let laws = std::array::from_fn(|lane| atlas.law(directions.laws[lane] as usize));
         Self { laws, count: directions.count, extent, centre }
     }
 
@@ -52,29 +101,6 @@ impl<'a> FromAtlas<'a> {
         let cells = means.len();
         for (lane, (law, centre)) in self.laws.iter().zip(&self.centre).enumerate().take(self.count) {
             law.for_each_cell(cells, |cell, mean| means[cell][lane] = (mean - centre) as f32);
-        }
-    }
-}
-
-impl LaneLaw<'_> {
-    /// Length of the support, per lane.
-    #[inline(always)]
-    pub(crate) fn extent(&self) -> &Row {
-        match self {
-            LaneLaw::Trapezoid(law) => &law.extent,
-            LaneLaw::Tabulated(law) => &law.extent,
-            LaneLaw::Atlas(law) => &law.extent,
-        }
-    }
-
-    /// Writes the means of the quantile function over the lower `n / 2` of `n` equal cells. Those of the upper half are
-    /// their negatives, and that of a cell in the middle is 0. `root_means` are those of [`root_mean`].
-    #[inline(always)]
-    pub(crate) fn lower_cell_means<S: Simd>(&self, simd: S, n: usize, root_means: &[f32], cells: &mut [Row]) {
-        match self {
-            LaneLaw::Trapezoid(law) => law.lower_cell_means(simd, n, root_means, cells),
-            LaneLaw::Tabulated(law) => law.lower_cell_means(n, cells),
-            LaneLaw::Atlas(_) => {}
         }
     }
 }
@@ -204,16 +230,20 @@ pub(crate) struct Tabulated<'a> {
 }
 
 impl<'a> Tabulated<'a> {
-    /// The laws of these directions for subsets whose quantile cells end at the boundaries of `grid`.
     #[inline(always)]
-    pub(crate) fn new(directions: &'a Directions, block: &'a Block, grid: &'a [Boundary]) -> Self {
+    fn new(
+        directions: &Directions,
+        block: &'a Block,
+        on_axis: &'a [bool; LANES],
+        grid: &'a [Boundary],
+    ) -> Self {
         let mut extent = [0.0_f32; LANES];
         for row in &directions.theta {
             for lane in 0..LANES {
                 extent[lane] += row[lane].abs();
             }
         }
-        Self { block, grid, on_axis: &directions.on_axis, extent }
+        Self { block, grid, on_axis, extent }
     }
 
     #[inline(always)]

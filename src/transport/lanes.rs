@@ -5,12 +5,11 @@
 //! the position comes out of the sort for free. Plain arrays of [`LANES`] numbers: the compiler turns them into
 //! whatever vectors the processor has, without changing a bit of the result.
 
-use std::ops::Range;
-
 use pulp::Simd;
 
 use crate::simd::{self, LANES, Row};
-use crate::transport::cells::{self, LaneLaw};
+use crate::transport::cells::{self, LaneLaws};
+use crate::transport::gather::Gather;
 use crate::transport::network::Network;
 
 /// Largest subset that is sorted in lanes; above it the network's O(n log² n) loses to a general sort.
@@ -66,117 +65,6 @@ impl LaneBuffers {
     }
 }
 
-/// Numbers of the samples of a subset.
-#[derive(Clone)]
-pub(crate) enum Samples<'a> {
-    List(&'a [u32]),
-    Run(Range<u32>),
-}
-
-impl Samples<'_> {
-    pub(crate) fn len(&self) -> usize {
-        match self {
-            Samples::List(list) => list.len(),
-            Samples::Run(run) => run.len(),
-        }
-    }
-}
-
-/// Where the samples of a subset stand, seen from one dimension group.
-pub(crate) struct Gather<'a> {
-    /// Numbers of the samples.
-    pub samples: Samples<'a>,
-    /// Values of the whole table.
-    pub points: &'a [f32],
-    /// Dimensions of the table.
-    pub stride: usize,
-    /// Dimensions of the group.
-    pub dims: &'a [usize],
-    /// Shift of each dimension of the group before it wraps; `None` for an interval.
-    pub cut: &'a [Option<f32>],
-}
-
-impl Gather<'_> {
-    /// Writes the coordinates of a listed subset, sample by sample, from the middle of the cube. A run is none that the
-    /// lanes take.
-    #[inline(always)]
-    fn gather(&self, coordinates: &mut [f32]) {
-        let Samples::List(list) = self.samples else { return };
-        let values = list.iter().map(|&sample| self.sample(sample));
-        if let ([x, y], [None, None]) = (self.dims, self.cut) {
-            // The common case by itself, without a choice per coordinate.
-            let (points, _) = coordinates.as_chunks_mut::<2>();
-            for (point, values) in points.iter_mut().zip(values) {
-                *point = [values[*x] - 0.5, values[*y] - 0.5];
-            }
-            return;
-        }
-        for (point, values) in coordinates.chunks_exact_mut(self.dims.len()).zip(values) {
-            for (dim, value) in point.iter_mut().enumerate() {
-                *value = self.coordinate(values, dim) - 0.5;
-            }
-        }
-    }
-
-    /// Writes the projections of the samples from `first` on along a direction.
-    #[inline(always)]
-    pub(crate) fn project(&self, first: usize, theta: &impl Fn(usize) -> f32, projections: &mut [f32]) {
-        match &self.samples {
-            Samples::List(list) => {
-                let values = list[first..].iter().map(|&sample| self.sample(sample));
-                self.project_each(values, theta, projections);
-            }
-            Samples::Run(run) => {
-                let points = &self.points[(run.start as usize + first) * self.stride..];
-                self.project_each(points.chunks_exact(self.stride), theta, projections);
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn project_each<'a>(
-        &self,
-        samples: impl Iterator<Item = &'a [f32]> + Clone,
-        theta: &impl Fn(usize) -> f32,
-        projections: &mut [f32],
-    ) {
-        if let (&[x, y], [None, None]) = (self.dims, self.cut) {
-            // The common case by itself, without a choice per coordinate.
-            let theta = [theta(0), theta(1)];
-            for (projection, values) in projections.iter_mut().zip(samples) {
-                *projection = values[x] * theta[0] + values[y] * theta[1];
-            }
-            return;
-        }
-        projections.fill(0.0);
-        for dim in 0..self.dims.len() {
-            let component = theta(dim);
-            for (projection, values) in projections.iter_mut().zip(samples.clone()) {
-                *projection += self.coordinate(values, dim) * component;
-            }
-        }
-    }
-
-    /// Coordinates of a sample in the table.
-    #[inline(always)]
-    fn sample(&self, sample: u32) -> &[f32] {
-        &self.points[sample as usize * self.stride..][..self.stride]
-    }
-
-    /// Coordinate `dim` (of the group) of a sample, shifted and wrapped where the dimension is a torus.
-    #[inline(always)]
-    fn coordinate(&self, values: &[f32], dim: usize) -> f32 {
-        let value = values[self.dims[dim]];
-        match self.cut[dim] {
-            None => value,
-            Some(cut) => {
-                let shifted = value - cut;
-                if shifted < 0.0 { shifted + 1.0 } else { shifted }
-            }
-        }
-    }
-}
-
 /// Transports a subset along all lanes and writes, per sample and dimension of the group, the sum over lanes of
 /// `displacement * theta` to `moves`. Returns the sum of squared displacements.
 ///
@@ -187,7 +75,7 @@ pub(crate) fn transport<S: Simd>(
     simd: S,
     subset: &Gather,
     theta: &[Row],
-    law: &LaneLaw,
+    laws: &LaneLaws,
     network: &Network,
     buffers: &mut LaneBuffers,
     moves: &mut [f32],
@@ -198,26 +86,28 @@ pub(crate) fn transport<S: Simd>(
     let (coordinates, projections) = (&mut coordinates[..n * theta.len()], &mut projections[..n]);
     subset.gather(coordinates);
     project(coordinates, theta, projections);
-    if let LaneLaw::Atlas(atlas) = law {
-        let keys = &mut keys[..n];
-        means.resize(n.max(means.len()), [0.0; LANES]);
-        encode(simd, projections, law.extent(), keys);
-        network.sort(simd, keys);
-        atlas.cell_means(&mut means[..n]);
-        match_all_targets(keys, &means[..n], targets);
-    } else if n == 1 {
-        targets[0] = [0.0; LANES];
-    } else {
-        let (keys, means) = (&mut keys[..n], &mut means[..n / 2]);
-        encode(simd, projections, law.extent(), keys);
-        network.sort(simd, keys);
-        law.lower_cell_means(simd, n, root_means, means);
-        match_targets(keys, means, targets);
+    match laws {
+        LaneLaws::Pieces(laws_of_pieces) => {
+            let keys = &mut keys[..n];
+            means.resize(n.max(means.len()), [0.0; LANES]);
+            encode(simd, projections, laws.extent(), keys);
+            network.sort(simd, keys);
+            laws_of_pieces.cell_means(&mut means[..n]);
+            match_all_targets(keys, &means[..n], targets);
+        }
+        LaneLaws::Symmetric(_) if n == 1 => targets[0] = [0.0; LANES],
+        LaneLaws::Symmetric(symmetric) => {
+            let (keys, means) = (&mut keys[..n], &mut means[..n / 2]);
+            encode(simd, projections, laws.extent(), keys);
+            network.sort(simd, keys);
+            symmetric.lower_cell_means(simd, n, root_means, means);
+            match_targets(keys, means, targets);
+        }
     }
     let quarters = &mut quarters[..n * theta.len()];
     let mut squares = displace(projections, &targets[..n], theta, quarters);
     add_up(quarters, moves);
-    for (square, &extent) in squares.iter_mut().zip(law.extent()) {
+    for (square, &extent) in squares.iter_mut().zip(laws.extent()) {
         // An unused lane may have targets, but moves nothing.
         *square = if extent > 0.0 { *square } else { 0.0 };
     }

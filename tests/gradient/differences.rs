@@ -1,8 +1,8 @@
 //! The gradient is the derivative of the value, by central differences in a property test that seeks trouble.
 
-use fsot::Slice;
 use fsot::classes::{Classes, FilterForm};
 use fsot::config::Domain;
+use fsot::objective::Slice;
 use fsot::{Extent, Objective};
 use proptest::prelude::*;
 

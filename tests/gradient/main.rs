@@ -8,12 +8,10 @@ mod ties;
 mod values;
 
 use fsot::classes::{Classes, FilterForm};
-use fsot::config::Term;
-use fsot::config::{Domain, Role, Slicing};
-use fsot::kernel::SpatialKernel;
-use fsot::kernel::TemporalKernel;
+use fsot::config::{Domain, Role, Term};
+use fsot::kernel::{SpatialKernel, TemporalKernel};
 use fsot::targets::Target;
-use fsot::{Extent, Kernel, Objective};
+use fsot::{Config, Extent, Kernel, Objective};
 
 /// A term of weight 1 that is descended.
 fn term(classes: Classes, dims: &[usize]) -> Term {
@@ -27,7 +25,8 @@ fn lattice(form: FilterForm) -> Classes {
 }
 
 fn objective(extent: Extent, domains: &[Domain], terms: &[Term]) -> Objective {
-    Objective::new(extent, domains.len(), domains, terms, &Slicing::default()).unwrap()
+    let config = Config::new(extent, domains.len()).with_domains(domains.to_vec());
+    Objective::new(&config.with_terms(terms.to_vec())).unwrap()
 }
 
 /// Unit vector; components of exactly 0 stay 0.

@@ -1,9 +1,9 @@
 //! What `value_and_gradient` refuses, and how it says so.
 
-use fsot::Slice;
 use fsot::classes::{Classes, FilterForm};
 use fsot::config::Domain;
-use fsot::{ConfigError, Extent, Objective};
+use fsot::objective::{ObjectiveError, Slice, SliceError};
+use fsot::{Extent, Objective};
 
 use crate::{lattice, objective, term};
 
@@ -18,7 +18,7 @@ fn good() -> Slice {
     Slice { term: 0, member: 23, level: 0.5, direction: vec![0.6, 0.8], cut: vec![0.1, 0.9] }
 }
 
-fn refusal(points: &[f64], slices: &[Slice], words: &str) -> ConfigError {
+fn refusal(points: &[f64], slices: &[Slice], words: &str) -> ObjectiveError {
     let error = planned().value_and_gradient(points, slices).unwrap_err();
     assert_eq!(error.to_string(), words);
     error
@@ -31,7 +31,7 @@ fn points_that_do_not_fit() {
             "the list of points holds {count} values, but the table has 72: give one value per coordinate"
         );
         let error = refusal(&vec![0.5; count], &[good()], &words);
-        assert!(matches!(error, ConfigError::ValueCount { expected: 72, .. }));
+        assert!(matches!(error, ObjectiveError::PointCount { expected: 72, .. }));
     }
     for value in [1.0, -1e-300, f64::NAN, f64::INFINITY, 1.5] {
         let mut points = vec![0.5; 72];
@@ -40,13 +40,13 @@ fn points_that_do_not_fit() {
         // Also with nothing to do.
         for slices in [&[good()][..], &[]] {
             let error = refusal(&points, slices, &words);
-            assert!(matches!(error, ConfigError::BadPoint { index: 17, .. }));
+            assert!(matches!(error, ObjectiveError::BadPoint { index: 17, .. }));
         }
     }
 }
 
 /// The second slice of two is bad.
-fn bad_slice(slice: Slice, words: &str) -> ConfigError {
+fn bad_slice(slice: Slice, words: &str) -> ObjectiveError {
     refusal(&[0.5; 72], &[good(), slice], &format!("slice 1: {words}"))
 }
 
@@ -56,7 +56,7 @@ fn slices_that_name_what_there_is_not() {
         Slice { term: 2, ..good() },
         "term is 2, but the objective has 2: stay below it", //
     );
-    assert!(matches!(error, ConfigError::BadSlice { what: "term", .. }));
+    assert!(matches!(error, ObjectiveError::Slice { problem: SliceError::NoSuch { what: "term", .. }, .. }));
     bad_slice(
         Slice { term: usize::MAX, ..good() },
         &format!("term is {}, but the objective has 2: stay below it", usize::MAX),
@@ -75,7 +75,10 @@ fn slices_of_another_shape() {
         ] {
             let words =
                 format!("{what} has {length} components, but its group has 2 dimensions: give one each");
-            assert!(matches!(bad_slice(slice, &words), ConfigError::SliceShape { expected: 2, .. }));
+            assert!(matches!(
+                bad_slice(slice, &words),
+                ObjectiveError::Slice { problem: SliceError::Components { expected: 2, .. }, .. }
+            ));
         }
     }
 }
@@ -88,7 +91,10 @@ fn slices_with_unusable_numbers() {
             (Slice { cut: vec![value, 0.5], ..good() }, "cut"),
         ] {
             let words = format!("{what} is {value}: give finite values of reasonable size");
-            assert!(matches!(bad_slice(slice, &words), ConfigError::SliceValue { .. }));
+            assert!(matches!(
+                bad_slice(slice, &words),
+                ObjectiveError::Slice { problem: SliceError::Value { .. }, .. }
+            ));
         }
     }
     for value in [f64::NAN, 1.0, -0.1, f64::INFINITY] {

@@ -1,9 +1,9 @@
 //! Exact ties: the distance is continuous there, but has a corner, of which the gradient is one side.
 
 use fsot::Extent;
-use fsot::Slice;
 use fsot::classes::{Classes, FilterForm};
 use fsot::config::Domain;
+use fsot::objective::Slice;
 
 use crate::{lattice, objective, spread, term, unit};
 

@@ -1,9 +1,9 @@
 //! The value is the mean over slices of `(n / N) W2²`.
 
 use fsot::Extent;
-use fsot::Slice;
 use fsot::classes::{Classes, FilterForm};
 use fsot::config::Domain;
+use fsot::objective::Slice;
 
 use crate::brute_force::Law;
 use crate::{lattice, objective, spread, term, unit};
@@ -54,7 +54,7 @@ fn the_value_is_that_of_the_definition() {
             let all: Vec<usize> = (0..dims).collect();
             let objective = objective(EXTENT, &domains, &[term(lattice(form), &all)]);
             let points = spread(EXTENT.samples() * dims, 0.1);
-            // LabelSubsets of 97, 13, 1 and 5 pixels; next to the centre, taps weigh 0.797.
+            // Subsets of 97, 13, 1 and 5 pixels; next to the centre, taps weigh 0.797.
             let slices: Vec<Slice> = [(0, 0.0), (77, 0.4), (271, 0.8), (60, 0.7)]
                 .into_iter()
                 .map(|(member, level)| Slice {

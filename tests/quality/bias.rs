@@ -8,7 +8,7 @@ use crate::{extent, optimized};
 
 /// The published size: 64 × 64 pixels in one frame.
 fn published(seed: u64) -> Config {
-    Config { seed, ..Config::new(extent([1, 64, 64, 1]), 2) }
+    Config::new(extent([1, 64, 64, 1]), 2).with_seed(seed)
 }
 
 fn histogram(table: &SampleTable) -> Histogram {
@@ -39,7 +39,7 @@ fn default_tables_are_unbiased() {
 
 #[test]
 fn an_animation_is_unbiased_in_every_frame() {
-    let config = Config { seed: 1, ..Config::new(extent([4, 64, 64, 1]), 2) };
+    let config = Config::new(extent([4, 64, 64, 1]), 2).with_seed(1);
     let optimizer = optimized(&config, 160);
     let table = optimizer.into_table();
     let frames = table.values().chunks_exact(64 * 64 * 2).map(|frame| {

@@ -1,8 +1,8 @@
 //! The bound: of optimised tables, of white noise, and its standard error.
 
-use fsot::Slice;
 use fsot::classes::{Classes, FilterForm};
-use fsot::config::{Descent, Domain, Role, Slicing, Term};
+use fsot::config::{Descent, Role, Term};
+use fsot::objective::Slice;
 use fsot::targets::Target;
 use fsot::{Config, Extent, Objective, Optimizer, SampleTable, metrics};
 
@@ -12,10 +12,10 @@ use crate::{extent, optimized, ratio};
 /// percent above what was measured when this was written, so that a worse optimiser is noticed.
 fn reaches(shape: [usize; 4], dims: usize, descent: Descent, slices: u64, limit: f64) {
     for seed in 0..5 {
-        let config = Config { seed, descent, ..Config::new(extent(shape), dims) };
+        let config = Config::new(extent(shape), dims).with_seed(seed).with_descent(descent);
         let optimizer = optimized(&config, slices);
         let (ratio, error) = ratio(&optimizer, &optimizer.table(), 4096);
-        println!("{shape:?} {dims} {} seed {seed}: {ratio:.4} ± {error:.4}", descent.rate().first);
+        println!("{shape:?} {dims} {} seed {seed}: {ratio:.4} ± {error:.4}", descent.rate().ends()[0]);
         assert!(error < 0.02, "{error}");
         assert!(ratio + 3.0 * error < limit, "{shape:?} seed {seed}: {ratio} ± {error}");
     }
@@ -57,7 +57,7 @@ fn white_noise_is_one() {
     for (shape, dims) in [([1, 24, 24, 1], 2), ([4, 8, 8, 2], 3), ([1, 10, 7, 1], 1), ([2, 3, 3, 4], 4)] {
         let ratios: Vec<f64> = (0..10)
             .map(|seed| {
-                let config = Config { seed, ..Config::new(extent(shape), dims) };
+                let config = Config::new(extent(shape), dims).with_seed(seed);
                 let optimizer = Optimizer::new(config).unwrap();
                 ratio(&optimizer, &optimizer.table(), 1024).0
             })
@@ -76,10 +76,10 @@ fn white_noise_is_one() {
 #[test]
 fn the_standard_error_falls_with_the_root() {
     let config = Config::new(extent([1, 32, 32, 1]), 2);
-    let terms: Vec<Term> = config.terms.into_iter().filter(|term| term.role == Role::Descend).collect();
-    let domains = [Domain::Interval; 2];
-    let objective = Objective::new(config.extent, 2, &domains, &terms, &Slicing::default()).unwrap();
     let table = SampleTable::white_noise(config.extent, 2, 3).unwrap();
+    let descended = |term: &&Term| term.role == Role::Descend;
+    let terms = config.terms.iter().filter(descended).cloned().collect();
+    let objective = Objective::new(&config.with_terms(terms)).unwrap();
     let few = metrics::bound(&objective, &table, 1, 2048).unwrap().total;
     let many = metrics::bound(&objective, &table, 2, 16 * 2048).unwrap().total;
     let fall = few.standard_error / many.standard_error;
@@ -100,7 +100,7 @@ fn the_bound_is_exact_on_the_line() {
         weight: 1.0,
         role: Role::Descend,
     };
-    let objective = Objective::new(extent, 1, &[Domain::Interval], &[term], &Slicing::default()).unwrap();
+    let objective = Objective::new(&Config::new(extent, 1).with_terms(vec![term])).unwrap();
     let table = SampleTable::new(extent, 1, vec![0.6, 0.1]).unwrap();
     let bound = metrics::bound(&objective, &table, 1, 256).unwrap();
     // ∫ |u − 0.1| over [0, 1/2] and ∫ |u − 0.6| over [1/2, 1], the same along −1.
@@ -119,11 +119,9 @@ fn the_weighted_form_is_tighter() {
     let config = Config::new(extent([1, 32, 32, 1]), 2);
     let table = optimized(&config, 50).into_table();
     let value = |form| {
-        let mut terms = vec![config.terms[0].clone()];
-        let Classes::Lattice { form: of_term, .. } = &mut terms[0].classes else { panic!("{:?}", terms[0]) };
-        *of_term = form;
-        let domains = [Domain::Interval; 2];
-        let objective = Objective::new(config.extent, 2, &domains, &terms, &Slicing::default()).unwrap();
+        let mut config = config.clone().with_form(form);
+        config.terms.truncate(1);
+        let objective = Objective::new(&config).unwrap();
         metrics::bound(&objective, &table, 5, 4096).unwrap().total
     };
     let (weighted, level_sets) = (value(FilterForm::Weighted), value(FilterForm::LevelSets));

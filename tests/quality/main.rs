@@ -9,7 +9,8 @@ mod sweeps;
 
 use std::ops::ControlFlow;
 
-use fsot::{Config, Extent, Optimizer, SampleTable, StepReport, Until, metrics};
+use fsot::optimizer::StepReport;
+use fsot::{Config, Extent, Optimizer, SampleTable, Until, metrics};
 
 fn extent([frames, height, width, spp]: [usize; 4]) -> Extent {
     Extent { frames, height, width, spp }
@@ -21,7 +22,7 @@ fn on(_: &StepReport) -> ControlFlow<()> {
 
 fn optimized(config: &Config, slices_per_class: u64) -> Optimizer {
     let mut optimizer = Optimizer::new(config.clone()).unwrap();
-    optimizer.run(Until::SlicesPerClass(slices_per_class), on).unwrap();
+    optimizer.run_observed(Until::SlicesPerClass(slices_per_class), on).unwrap();
     optimizer
 }
 

@@ -28,6 +28,9 @@ fn kernel_refusal(spatial: SpatialKernel, temporal: TemporalKernel) -> String {
         let kernel = Kernel::product(spatial, temporal);
         config.terms[0].classes = Classes::Lattice { kernel, form: FilterForm::LevelSets };
     })
+    .strip_prefix("term 0: ")
+    .expect("the term is named")
+    .to_string()
 }
 
 #[test]
@@ -55,21 +58,21 @@ fn domains_and_terms() {
     assert_eq!(words, "the objective has no term with a positive weight: give at least one");
     for (weight, text) in [(0.0, "0"), (-1.0, "-1"), (f64::NAN, "NaN"), (f64::INFINITY, "inf")] {
         let words = refusal(|config| config.terms[1].weight = weight);
-        assert_eq!(words, format!("the weight of a term is {text}: give a value above 0 and finite"));
+        assert_eq!(words, format!("term 1: the weight of a term is {text}: give a value above 0 and finite"));
     }
 }
 
 #[test]
 fn groups() {
     let words = refusal(|config| config.terms[2].dims.clear());
-    assert_eq!(words, "dimension group 2 is empty: name at least one dimension");
+    assert_eq!(words, "term 2: the dimension group is empty: name at least one dimension");
     let words = refusal(|config| config.terms[1].dims = vec![0, 3]);
     assert_eq!(
         words,
-        "dimension group 1 names dimension 3, but the table has 3: name dimensions from 0 to 2"
+        "term 1: the dimension group names dimension 3, but the table has 3: name dimensions from 0 to 2"
     );
     let words = refusal(|config| config.terms[0].dims = vec![2, 1, 2]);
-    assert_eq!(words, "dimension group 0 names dimension 2 twice: name each dimension once");
+    assert_eq!(words, "term 0: the dimension group names dimension 2 twice: name each dimension once");
 }
 
 #[test]

@@ -1,7 +1,9 @@
 //! How runs end, and tables of unusual shape.
 
+use std::time::Duration;
+
 use fsot::config::EndReason;
-use fsot::{Config, ConfigError, Optimizer, SampleTable, StepReport, Until};
+use fsot::{Config, ConfigError, Optimizer, SampleTable, Until};
 
 use crate::{extent, on, optimized, ratio};
 
@@ -14,16 +16,16 @@ fn epochs_and_slices_are_counted() {
     let mut optimizer = small();
     // By default an epoch has 16 slices per pixel, and a step is a sixteenth of it.
     let lattice_share = 0.9;
-    let report = optimizer.run(Until::Epochs(3), on).unwrap();
+    let report = optimizer.run_observed(Until::Epochs(3), on).unwrap();
     assert_eq!(report.ended, EndReason::Finished);
     // Steps hold some balancing slices besides.
     let per_class = report.slices as f64 / 256.0;
     assert!((48.0..48.0 / lattice_share).contains(&per_class), "{report:?}");
     assert!((48..=52).contains(&report.steps), "{report:?}");
     assert_eq!(report.work.slices_per_class, 48);
-    let report = small().run(Until::SlicesPerClass(48), on).unwrap();
+    let report = small().run_observed(Until::SlicesPerClass(48), on).unwrap();
     assert_eq!(report.work.slices_per_class, 48);
-    let report = small().run(Until::SlicesPerClass(0), on).unwrap();
+    let report = small().run_observed(Until::SlicesPerClass(0), on).unwrap();
     assert_eq!((report.steps, report.slices, report.ended), (0, 0, EndReason::Finished));
 }
 
@@ -31,21 +33,22 @@ fn epochs_and_slices_are_counted() {
 fn step_reports_count_up() {
     let mut seen = Vec::new();
     let report = small()
-        .run(Until::SlicesPerClass(16), |step| {
-            seen.push(*step);
+        .run_observed(Until::SlicesPerClass(16), |step| {
+            seen.push((step.step, step.steps, step.displacement, step.slices, step.rate, step.elapsed));
             std::ops::ControlFlow::Continue(())
         })
         .unwrap();
     assert_eq!(seen.len() as u64, report.steps);
-    for (index, step) in seen.iter().enumerate() {
-        assert_eq!((step.step, step.steps), (index as u64 + 1, report.steps));
-        assert!(step.displacement > 0.0 && step.displacement < 1.0);
+    for (index, &(step, steps, displacement, ..)) in seen.iter().enumerate() {
+        assert_eq!((step, steps), (index as u64 + 1, report.steps));
+        assert!(displacement > 0.0 && displacement < 1.0);
     }
-    assert!(seen.is_sorted_by(|a, b| a.slices < b.slices && a.rate > b.rate && a.elapsed <= b.elapsed));
-    assert_eq!(seen.last().unwrap().slices, report.slices);
+    assert!(seen.is_sorted_by(|a, b| a.3 < b.3 && a.4 > b.4 && a.5 <= b.5));
+    assert_eq!(seen.last().unwrap().3, report.slices);
     // The table gets better: over a run from white noise the displacement falls, most of which is that of subsets of
     // one and two samples and stays.
-    let mean = |steps: &[StepReport]| steps.iter().map(|step| step.displacement).sum::<f64>() / 4.0;
+    let mean =
+        |steps: &[(u64, u64, f64, u64, f64, Duration)]| steps.iter().map(|step| step.2).sum::<f64>() / 4.0;
     let (first, last) = (mean(&seen[..4]), mean(&seen[seen.len() - 4..]));
     assert!(last < 0.95 * first, "{first} {last}");
 }
@@ -53,13 +56,13 @@ fn step_reports_count_up() {
 #[test]
 fn a_run_ends_when_it_no_longer_improves() {
     let until = Until::Converged { improvement: 0.02, window_steps: 16, at_most: 100_000 };
-    let report = small().run(until, on).unwrap();
+    let report = small().run_observed(until, on).unwrap();
     assert_eq!(report.ended, EndReason::Converged);
     assert!(report.steps.is_multiple_of(16) && report.steps >= 32, "{report:?}");
     assert!(report.slices < 100_000 * 256 / 10, "{report:?}");
     // A rule that never holds leaves the limit.
     let until = Until::Converged { improvement: 0.0, window_steps: 1000, at_most: 16 };
-    let report = small().run(until, on).unwrap();
+    let report = small().run_observed(until, on).unwrap();
     assert_eq!((report.ended, report.work.slices_per_class), (EndReason::Finished, 16));
 }
 
@@ -77,7 +80,7 @@ fn bad_ends_are_refused_and_change_nothing() {
         (converged(0.1, 0), "the window is 0: give a value of at least 1 step"),
     ] {
         let mut optimizer = small();
-        let error = optimizer.run(until, |_| panic!("no step")).unwrap_err();
+        let error = optimizer.run_observed(until, |_| panic!("no step")).unwrap_err();
         assert_eq!(error.to_string(), words);
         assert_eq!(optimizer.table(), small().table());
     }
@@ -85,7 +88,7 @@ fn bad_ends_are_refused_and_change_nothing() {
 
 #[test]
 fn seconds_are_kept_about() {
-    let report = small().run(Until::Seconds(0.3), on).unwrap();
+    let report = small().run_observed(Until::Seconds(0.3), on).unwrap();
     let seconds = report.elapsed.as_secs_f64();
     // Wide: other work shares the machine, during calibration or after it.
     assert!((0.03..3.0).contains(&seconds), "{seconds}");
@@ -99,7 +102,7 @@ fn tables_to_start_from() {
     let mut second = Optimizer::from_table(config.clone(), first.clone()).unwrap();
     assert_eq!(second.table(), first);
     let before = ratio(&second, &first, 8192);
-    second.run(Until::SlicesPerClass(200), on).unwrap();
+    second.run_observed(Until::SlicesPerClass(200), on).unwrap();
     let after = ratio(&second, &second.table(), 8192);
     // A short run stays further from the limit than a long one that goes on from it.
     assert!(after.0 + 4.0 * after.1.hypot(before.1) < before.0, "{before:?} {after:?}");
@@ -112,7 +115,7 @@ fn tables_to_start_from() {
         );
         assert_eq!(error.to_string(), words);
     }
-    let bad = Config { domains: Vec::new(), ..config };
+    let bad = config.with_domains(Vec::new());
     let error = Optimizer::from_table(bad, first).err().unwrap();
     assert!(matches!(error, ConfigError::DomainCount { .. }), "{error}");
 }
@@ -131,7 +134,7 @@ fn unusual_shapes_run() {
         ([1, 1, 50, 1], 3),
         ([1, 4, 4, 1], 16),
     ] {
-        let config = Config { seed: 2, ..Config::new(extent(shape), dims) };
+        let config = Config::new(extent(shape), dims).with_seed(2);
         let optimizer = optimized(&config, 200);
         let table = optimizer.table();
         assert!(table.values().iter().all(|value| (0.0..1.0).contains(value)), "{shape:?}");

@@ -11,9 +11,9 @@ use crate::{extent, on, ratio};
 /// Limits lie some percent above what was measured when this was written.
 fn reaches(shape: [usize; 4], dims: usize, work: Work, [most_filtered, most_bound, most_bias]: [f64; 3]) {
     for seed in 0..3 {
-        let config = Config { seed, ..Config::new(extent(shape), dims) };
+        let config = Config::new(extent(shape), dims).with_seed(seed);
         let mut optimizer = Optimizer::new(config).unwrap();
-        optimizer.run(Until::Work(work), on).unwrap();
+        optimizer.run_observed(Until::Work(work), on).unwrap();
         let table = optimizer.table();
         let seen: Vec<usize> = (0..dims.min(2)).collect();
         let integrands = Integrands::random(seen.len(), 64, seed).unwrap();
@@ -64,9 +64,9 @@ fn the_objective_falls() {
         optimizer.objective().cramer(&points).unwrap().0
     };
     let start = value(&optimizer);
-    optimizer.run(Until::Sweeps(2), on).unwrap();
+    optimizer.run_observed(Until::Sweeps(2), on).unwrap();
     let soon = value(&optimizer);
-    optimizer.run(Until::Sweeps(20), on).unwrap();
+    optimizer.run_observed(Until::Sweeps(20), on).unwrap();
     let late = value(&optimizer);
     assert!(soon < 0.5 * start && late < 0.9 * soon && late > 0.0, "{start} {soon} {late}");
 }
@@ -77,12 +77,12 @@ fn a_torus_is_refused_before_anything_moves() {
     config.domains[1] = Domain::Torus;
     let mut optimizer = Optimizer::new(config).unwrap();
     let before = optimizer.table();
-    let error = optimizer.run(Until::Work(Work { slices_per_class: 8, sweeps: 1 }), on).unwrap_err();
+    let error = optimizer.run_observed(Until::Work(Work { slices_per_class: 8, sweeps: 1 }), on).unwrap_err();
     assert!(matches!(error, ConfigError::NotInClosedForm { term: 0, .. }), "{error}");
     assert!(optimizer.sweep(1.0, 1.0).is_err());
     assert_eq!(optimizer.table(), before);
     // A time is kept by slices instead.
-    let report = optimizer.run(Until::Seconds(0.01), on).unwrap();
+    let report = optimizer.run_observed(Until::Seconds(0.01), on).unwrap();
     assert!(report.work.sweeps == 0 && report.work.slices_per_class > 0);
 }
 
@@ -91,7 +91,7 @@ fn no_work_is_no_work() {
     let mut optimizer = Optimizer::new(Config::new(extent([1, 8, 8, 1]), 2)).unwrap();
     let before = optimizer.table();
     for until in [Until::Sweeps(0), Until::Work(Work::default()), Until::SlicesPerClass(0)] {
-        assert_eq!(optimizer.run(until, on).unwrap().steps, 0);
+        assert_eq!(optimizer.run_observed(until, on).unwrap().steps, 0);
         assert_eq!(optimizer.table(), before);
     }
 }

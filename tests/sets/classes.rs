@@ -132,8 +132,7 @@ fn slices_are_counted_per_class() {
     for batch_slices in [None, Some(96)] {
         config.slicing.batch_slices = batch_slices;
         let mut optimizer = Optimizer::new(config.clone()).unwrap();
-        let report =
-            optimizer.run(Until::SlicesPerClass(320), |_| std::ops::ControlFlow::Continue(())).unwrap();
+        let report = optimizer.run(Until::SlicesPerClass(320)).unwrap();
         assert!(report.slices.abs_diff(3 * 320) <= 96, "{batch_slices:?}: {}", report.slices);
     }
 }
@@ -145,7 +144,7 @@ fn a_class_that_nobody_demands_is_left_alone() {
     let demand = Demand::new([1, 1, 80], flags, vec![vec![0, 1]]).unwrap();
     let mut optimizer = Optimizer::for_demand(config, &demand).unwrap();
     let before = optimizer.table();
-    let (_, slices) = optimizer.step(1.0, 1.0);
+    let slices = optimizer.step(1.0, 1.0).slices;
     // Two classes hold demanded points: the first label, and the union, which is the same set now.
     assert_eq!(slices, 32);
     let after = optimizer.table();

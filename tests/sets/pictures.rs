@@ -1,7 +1,7 @@
 //! Pictures from files: depth, alpha, tone, inks.
 
-use fsot::targets::{Density, Inks, PictureError, Tone};
-use fsot::{Config, ConfigError};
+use fsot::Config;
+use fsot::targets::{Density, Inks, PictureError, TargetError, Tone};
 use image::{DynamicImage, GrayImage, ImageBuffer, Luma, LumaA, Rgb, RgbImage, Rgba, RgbaImage};
 
 use crate::optimised;
@@ -55,23 +55,23 @@ fn sixteen_bits_alpha_and_floats_are_read() {
 fn pictures_without_ink_are_refused() {
     let (black, white) = (GrayImage::new(3, 2), GrayImage::from_pixel(3, 2, Luma([255])));
     let clear: DynamicImage = RgbaImage::from_pixel(3, 2, Rgba([0, 0, 0, 0])).into();
-    let none = ConfigError::NoDensity { width: 3, height: 2 };
+    let none = TargetError::NoDensity { width: 3, height: 2 };
     assert_eq!(Density::from_picture(&black.into(), Tone::Bright), Err(none.clone()));
     assert_eq!(Density::from_picture(&white.clone().into(), Tone::Dark), Err(none.clone()));
     assert_eq!(Density::from_picture(&clear, Tone::Dark), Err(none.clone()));
     assert_eq!(Inks::from_picture(&white.into()), Err(none.clone()));
     assert_eq!(Inks::from_picture(&clear), Err(none));
     let blind: DynamicImage = ImageBuffer::from_pixel(1, 2, Rgba([0.5_f32, 0.5, 0.5, f32::NAN])).into();
-    assert!(matches!(Inks::from_picture(&blind), Err(ConfigError::BadDensity { x: 0, y: 0, .. })));
-    assert!(matches!(Density::from_picture(&blind, Tone::Dark), Err(ConfigError::BadDensity { .. })));
+    assert!(matches!(Inks::from_picture(&blind), Err(TargetError::BadDensity { x: 0, y: 0, .. })));
+    assert!(matches!(Density::from_picture(&blind, Tone::Dark), Err(TargetError::BadDensity { .. })));
     let long: DynamicImage = GrayImage::new(65536, 1).into();
-    assert!(matches!(Inks::from_picture(&long), Err(ConfigError::OutOfRange { .. })));
+    assert!(matches!(Inks::from_picture(&long), Err(TargetError::Range(_))));
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("white.png");
     GrayImage::from_pixel(3, 2, Luma([255])).save(&path).unwrap();
     let error = Density::open(&path, Tone::Dark).unwrap_err();
     assert!(
-        matches!(&error, PictureError::Density { problem: ConfigError::NoDensity { .. }, .. }),
+        matches!(&error, PictureError::Density { problem: TargetError::NoDensity { .. }, .. }),
         "{error}"
     );
     let path = folder.path().join("note.png");

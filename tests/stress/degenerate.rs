@@ -2,8 +2,8 @@
 
 use std::ops::ControlFlow;
 
-use fsot::Slice;
 use fsot::config::{BELOW_ONE, Domain, Role};
+use fsot::objective::Slice;
 use fsot::targets::Target;
 use fsot::{Config, Objective, Until, metrics};
 use proptest::prelude::*;
@@ -51,7 +51,7 @@ fn every_start_ends_where_white_noise_does() {
                     let mut optimizer = start(config, values);
                     let context = format!("{name}, {dims} dimensions, {first:?} first, {descent:?}");
                     optimizer
-                        .run(Until::SlicesPerClass(256), |report| {
+                        .run_observed(Until::SlicesPerClass(256), |report| {
                             assert!(report.displacement.is_finite(), "{context}");
                             ControlFlow::Continue(())
                         })
@@ -80,8 +80,7 @@ fn every_start_ends_where_white_noise_does() {
 
 /// Random slices of a configuration, as the optimiser draws them.
 fn drawn(config: &Config) -> (Objective, Vec<Slice>) {
-    let objective =
-        Objective::new(config.extent, config.dims, &config.domains, &config.terms, &config.slicing).unwrap();
+    let objective = Objective::new(config).unwrap();
     let slices = objective.draw(3, 1, Role::Descend);
     assert!(slices.len() > 100);
     (objective, slices)

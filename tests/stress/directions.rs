@@ -1,13 +1,10 @@
 //! Directions with components of any size, and sixteen dimensions.
 
-use std::ops::ControlFlow;
 use std::sync::LazyLock;
 
-use fsot::Slice;
-use fsot::classes::FilterForm;
-use fsot::config::{DimensionGroup, Domain, Term};
-use fsot::kernel::{SpatialKernel, TemporalKernel};
-use fsot::{Config, Kernel, Objective, SampleTable, Until, metrics};
+use fsot::config::{DimensionGroup, Domain};
+use fsot::objective::Slice;
+use fsot::{Config, Objective, SampleTable, Until, metrics};
 use proptest::prelude::*;
 
 use crate::{alternating, assert_inside, square};
@@ -17,11 +14,10 @@ static OBJECTIVES: LazyLock<[Objective; 5]> = LazyLock::new(|| [2, 3, 5, 9, 16].
 
 /// One term over all `dims` dimensions on an interval.
 fn objective(dims: usize) -> Objective {
-    let config = Config::new(square(6, 1), dims);
-    let kernel = Kernel::product(SpatialKernel::Gaussian { sigma_px: 2.1 }, TemporalKernel::None);
-    let group = DimensionGroup { dims: (0..dims).collect(), weight: 1.0 };
-    let terms = Term::blue_noise(&[kernel], FilterForm::LevelSets, &[group], &config.extent);
-    Objective::new(config.extent, dims, &config.domains, &terms[..1], &config.slicing).unwrap()
+    let group = DimensionGroup::new((0..dims).collect::<Vec<_>>());
+    let mut config = Config::new(square(6, 1), dims).with_groups(&[group]);
+    config.terms.truncate(1);
+    Objective::new(&config).unwrap()
 }
 
 fn slice(direction: Vec<f64>) -> Slice {
@@ -89,7 +85,7 @@ fn sixteen_dimensions_improve() {
             metrics::bound(optimizer.objective(), &optimizer.table(), 0, 1 << 11).unwrap()
         };
         let before = bound(&optimizer).total;
-        optimizer.run(Until::SlicesPerClass(256), |_| ControlFlow::Continue(())).unwrap();
+        optimizer.run(Until::SlicesPerClass(256)).unwrap();
         let after = bound(&optimizer).total;
         assert_inside(optimizer.table().values(), format_args!("axis share {axis_share}"));
         println!(

@@ -1,7 +1,5 @@
 //! Kernels of one tap and of thousands.
 
-use std::ops::ControlFlow;
-
 use fsot::classes::FilterForm;
 use fsot::config::{DimensionGroup, Term};
 use fsot::kernel::{SpatialKernel, SpatialTap, TemporalKernel};
@@ -26,7 +24,7 @@ fn one_tap() {
             let mut optimizer = Optimizer::new(config(16, spatial.clone(), form)).unwrap();
             assert_eq!(optimizer.objective().taps(0).unwrap().len(), 1);
             assert_eq!(optimizer.objective().taps(0).unwrap()[0].weight, 1.0);
-            optimizer.run(Until::SlicesPerClass(64), |_| ControlFlow::Continue(())).unwrap();
+            optimizer.run(Until::SlicesPerClass(64)).unwrap();
             let table = optimizer.table();
             assert_inside(table.values(), format_args!("{spatial:?} {form:?}"));
             let bound = metrics::bound(optimizer.objective(), &table, 0, 4096).unwrap();
@@ -61,7 +59,7 @@ fn four_thousand_taps() {
             };
             let before = bound(&optimizer);
             for step in 0..12 {
-                let (displacement, _) = optimizer.step(0.7_f64.powi(step), 1.0);
+                let displacement = optimizer.step(0.7_f64.powi(step), 1.0).displacement;
                 assert!(displacement.is_finite());
             }
             let after = bound(&optimizer);

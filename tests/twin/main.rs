@@ -5,6 +5,7 @@ mod textbook;
 use fsot::classes::FilterForm;
 use fsot::config::{Descent, DimensionGroup, Domain, Role, Term};
 use fsot::kernel::{SpatialKernel, SpatialTap, TemporalKernel};
+use fsot::optimizer::SliceStep;
 use fsot::{Config, Extent, Kernel, Optimizer, SampleTable};
 
 /// What a case is about; the rest is [`Config::new`].
@@ -17,7 +18,7 @@ struct Case {
     torus: bool,
     directions: usize,
     axis_share: f64,
-    /// LabelSubsets per step, about.
+    /// Subsets per step, about.
     subsets: usize,
 }
 
@@ -81,7 +82,7 @@ impl Case {
         // where the first ended.
         let step = |balance: f64| {
             let mut optimizer = Optimizer::from_table(config.clone(), before.clone()).unwrap();
-            let (displacement, slices) = optimizer.step(0.8, balance);
+            let SliceStep { displacement, slices, .. } = optimizer.step(0.8, balance);
             (optimizer.into_table(), displacement, slices)
         };
         let (descended, displacement, slices) = step(0.0);
@@ -169,7 +170,7 @@ fn several_samples_per_pixel() {
     assert!(sizes.iter().any(|&size| (257..=388).contains(&size)), "{sizes:?}");
 }
 
-/// LabelSubsets above 1024 samples leave the lanes; all of these sizes share one family and its sixteen directions.
+/// Subsets above 1024 samples leave the lanes; all of these sizes share one family and its sixteen directions.
 #[test]
 fn sixteen_samples_per_pixel() {
     for (dims, axis_share) in [(2, 0.3), (3, 0.3)] {
@@ -300,7 +301,7 @@ fn weights_too_small_to_have_a_cell() {
         config.slicing.batch_slices = Some(2);
         let mut optimizer = Optimizer::new(config).unwrap();
         assert_eq!(optimizer.objective().taps(0).unwrap().len(), 256);
-        let (displacement, _) = optimizer.step(1.0, 1.0);
+        let displacement = optimizer.step(1.0, 1.0).displacement;
         assert!((0.0..0.1).contains(&displacement), "{displacement}");
         assert!(optimizer.table().values().iter().all(|value| (0.0..1.0).contains(value)));
     }

@@ -2,10 +2,10 @@
 //!
 //! Shared with the engine are the slices and the law of a projection, which has tests of its own.
 
-use fsot::Slice;
 use fsot::classes::{Classes, FilterForm};
 use fsot::config::{Domain, Role, Term};
 use fsot::kernel::{SpatialKernel, TemporalKernel};
+use fsot::objective::Slice;
 use fsot::targets::Target;
 use fsot::{Config, Extent, Site};
 

@@ -2,14 +2,12 @@
 
 use std::io::Write;
 
-use fsot::classes::FilterForm;
-use fsot::config::{DimensionGroup, Domain, Slicing, Term};
-use fsot::files::Metadata;
-use fsot::files::TableError;
+use fsot::config::DimensionGroup;
+use fsot::files::{Metadata, TableError};
 use fsot::kernel::TemporalKernel;
 use fsot::metrics::{Bias, Family, FilteredError, Integrands, Ratios, Spectra};
 use fsot::metrics::{bound, filtered_error, l2_star_discrepancy};
-use fsot::{Extent, Objective, SampleTable};
+use fsot::{Config, Extent, Objective, SampleTable};
 
 use super::Inspection;
 use super::evenness::Evenness;
@@ -201,10 +199,8 @@ fn write_bound(
     groups: &[DimensionGroup],
 ) -> Result<(), Failure> {
     let Inspection { table, kernel, bound_slices, seed, .. } = inspection;
-    let terms =
-        Term::blue_noise(std::slice::from_ref(kernel), FilterForm::LevelSets, groups, &table.extent());
-    let domains = vec![Domain::Interval; table.dims()];
-    let objective = Objective::new(table.extent(), table.dims(), &domains, &terms, &Slicing::default())?;
+    let config = Config::new(table.extent(), table.dims()).with_groups(groups).with_kernel(kernel.clone());
+    let objective = Objective::new(&config)?;
     let total = bound(&objective, table, *seed, *bound_slices)?.total;
     writeln!(
         out,

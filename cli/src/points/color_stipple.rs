@@ -3,7 +3,6 @@
 //!
 //! `cargo run --release --example color_stippling -- --picture data/garden.png --out color_stippling.png`
 
-use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use crate::Failure;
@@ -41,11 +40,11 @@ const INKS: [[u8; 3]; 4] = [[0, 165, 220], [225, 20, 130], [250, 225, 0], [25, 2
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let begin = std::time::Instant::now();
     let inks = Inks::open(&arguments.picture)?;
-    let config = Config { seed: arguments.seed, ..Config::color_stippling(arguments.count, &inks) };
+    let config = Config::color_stippling(arguments.count, &inks).with_seed(arguments.seed);
     let sets = config.terms.len();
     let mut optimizer = Optimizer::new(config)?;
     let planned = begin.elapsed().as_secs_f64();
-    let report = optimizer.run(Until::SlicesPerClass(arguments.slices), |_| ControlFlow::Continue(()))?;
+    let report = optimizer.run(Until::SlicesPerClass(arguments.slices))?;
     println!(
         "{sets} sets of inks, planned in {planned:.2} s, optimised in {:.2} s",
         report.elapsed.as_secs_f64()

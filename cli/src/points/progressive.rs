@@ -2,7 +2,6 @@
 //!
 //! `cargo run --release --example progressive -- --out progressive.png`
 
-use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use crate::Failure;
@@ -53,9 +52,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             Prefixes::Powers => PrefixLengths::PowersOfTwo,
             Prefixes::Every => PrefixLengths::Every,
         };
-        let config = Config { seed, ..Config::progressive(arguments.count, 2, lengths) };
+        let config = Config::progressive(arguments.count, 2, lengths).with_seed(seed);
         let mut optimizer = Optimizer::new(config)?;
-        let report = optimizer.run(Until::SlicesPerClass(arguments.slices), |_| ControlFlow::Continue(()))?;
+        let report = optimizer.run(Until::SlicesPerClass(arguments.slices))?;
         println!("seed {seed}: {:.2} s", report.elapsed.as_secs_f64());
         sequences.push(optimizer.into_table().into_values());
     }

@@ -2,7 +2,6 @@
 //!
 //! `cargo run --release --example stippling -- --picture data/lantern.png --out stippling.png`
 
-use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use crate::Failure;
@@ -43,10 +42,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let begin = std::time::Instant::now();
     let tone = if arguments.bright { Tone::Bright } else { Tone::Dark };
     let density = Density::open(&arguments.picture, tone)?;
-    let config = Config { seed: arguments.seed, ..Config::stippling(arguments.count, density.clone()) };
+    let config = Config::stippling(arguments.count, density.clone()).with_seed(arguments.seed);
     let mut optimizer = Optimizer::new(config)?;
     let planned = begin.elapsed();
-    let report = optimizer.run(Until::SlicesPerClass(arguments.slices), |_| ControlFlow::Continue(()))?;
+    let report = optimizer.run(Until::SlicesPerClass(arguments.slices))?;
     println!("planned in {:.2} s, optimised in {:.2} s", planned.as_secs_f64(), report.elapsed.as_secs_f64());
 
     let table = optimizer.into_table();

@@ -3,7 +3,6 @@
 //! `cargo run --release --example two_class -- --out two_class.png`
 
 use std::collections::BTreeMap;
-use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -57,7 +56,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let config = Config::classes(counts, 2, &subsets);
     let Classes::Labelled { labels, subsets } = &config.terms[0].classes else { return Ok(()) };
     let (labels, subsets) = (labels.clone(), subsets.clone());
-    let (points, elapsed) = optimised(Config { seed: *seed, ..config }, *slices)?;
+    let (points, elapsed) = optimised(config.with_seed(*seed), *slices)?;
     println!("{} points in {} classes: {:.2} s", labels.len(), subsets.len(), elapsed.as_secs_f64());
 
     // How far each class is from uniform, and how far a set of its size could be.
@@ -75,7 +74,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let best = match alone.get(&size) {
             Some(&best) => best,
             None => {
-                let single = Config { seed: seed + 1, ..Config::classes(&[size], 2, &LabelSubsets::Every) };
+                let single = Config::classes(&[size], 2, &LabelSubsets::Every).with_seed(seed + 1);
                 let points: Vec<f64> = optimised(single, *slices)?.0.into_iter().map(f64::from).collect();
                 let best = metrics::sliced_w2(&points, 2, &Target::UniformCube, 256)?;
                 alone.insert(size, best);
@@ -103,6 +102,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 fn optimised(config: Config, slices: u64) -> Result<(Vec<f32>, Duration), ConfigError> {
     let mut optimizer = Optimizer::new(config)?;
-    let report = optimizer.run(Until::SlicesPerClass(slices), |_| ControlFlow::Continue(()))?;
+    let report = optimizer.run(Until::SlicesPerClass(slices))?;
     Ok((optimizer.into_table().into_values(), report.elapsed))
 }

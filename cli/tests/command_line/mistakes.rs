@@ -80,9 +80,9 @@ fn groups() {
     all_refused(&[
         (
             "--groups 0,9",
-            "dimension group 0 names dimension 9, but the table has 2: name dimensions from 0 to 1",
+            "the dimension group names dimension 9, but the table has 2: name dimensions from 0 to 1",
         ),
-        ("--groups 0,0", "dimension group 0 names dimension 0 twice: name each dimension once"),
+        ("--groups 0,0", "the dimension group names dimension 0 twice: name each dimension once"),
         ("--groups=", "'' is no dimension group: write for example 0,1:1 or 0-3:0.5"),
         ("--groups 0,1;", "'' is no dimension group"),
         ("--groups 3-1", "'3-1' is no dimension group"),

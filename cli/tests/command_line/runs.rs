@@ -21,11 +21,10 @@ fn a_run_writes_a_table_and_how_it_was_made() {
     assert_eq!((table.extent(), table.dims()), (extent, 2));
     // The configuration reads back as the library's own, and it makes the same table.
     let config: Config = serde_json::from_value(metadata.configuration.clone()).unwrap();
-    assert_eq!(config, Config { seed: 5, ..Config::new(extent, 2) });
+    assert_eq!(config, Config::new(extent, 2).with_seed(5));
     assert_eq!((metadata.seed, metadata.run.slices_per_class), (5, 100));
     let mut optimizer = fsot::Optimizer::new(config).unwrap();
-    let report =
-        optimizer.run(fsot::Until::SlicesPerClass(100), |_| std::ops::ControlFlow::Continue(())).unwrap();
+    let report = optimizer.run(fsot::Until::SlicesPerClass(100)).unwrap();
     assert_eq!((optimizer.table(), report.steps), (table, metadata.run.steps));
     // ∫ exp(-r²/σ²) = π σ² = 13.85; taps below a thousandth are dropped, at most their integral of 0.014.
     assert_eq!(metadata.kernels.len(), 1);

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::error::RenderError;
 use super::film::Film;
 use super::guides::{Guide, Guides};
-use fsot::ConfigError;
+use fsot::config::RangeError;
 
 /// An à-trous filter: `levels` passes of a 5 × 5 B-spline whose taps lie 1, 2, 4, … pixels apart, each tap weighted by how
 /// alike the surfaces are. One level alone is a bilateral filter of 5 × 5 pixels.
@@ -104,7 +104,7 @@ impl Denoiser {
     }
 
     fn check(&self, film: &Film, guides: &[Guides]) -> Result<(), RenderError> {
-        let bad = |name, value, expected| Err(ConfigError::OutOfRange { name, value, expected }.into());
+        let bad = |name, value, expected| Err(RangeError::new(name, value, expected).into());
         if !(1..=5).contains(&self.levels) {
             return bad("levels", self.levels.into(), "from 1 to 5");
         }
@@ -281,7 +281,7 @@ mod tests {
             Denoiser { normal_power: -1.0, ..Denoiser::default() },
             Denoiser { plane_share: 0.0, ..Denoiser::default() },
         ] {
-            assert!(matches!(bad.apply(&film, &guides), Err(RenderError::Config(_))), "{bad:?}");
+            assert!(matches!(bad.apply(&film, &guides), Err(RenderError::Extent(_) | RenderError::Range(_))), "{bad:?}");
         }
     }
 }

@@ -5,12 +5,23 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use fsot::ConfigError;
+use fsot::config::{ExtentError, RangeError};
+use fsot::kernel::KernelError;
 
 /// A rendering, a picture or a comparison that cannot be made.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RenderError {
-    /// An axis is empty, or a filter's parameter is out of range.
+    /// An axis is empty.
+    #[error(transparent)]
+    Extent(#[from] ExtentError),
+    /// A parameter lies outside its range.
+    #[error(transparent)]
+    Range(#[from] RangeError),
+    /// A filter that is none.
+    #[error(transparent)]
+    Kernel(#[from] KernelError),
+    /// A demand that is none.
     #[error(transparent)]
     Config(#[from] ConfigError),
     /// Two films that are compared differ in shape, or values do not fit a film.
@@ -68,6 +79,6 @@ pub enum RenderError {
 }
 
 /// Refuses an empty axis.
-pub(super) fn not_empty(axis: &'static str, len: usize) -> Result<(), ConfigError> {
-    if len == 0 { Err(ConfigError::EmptyAxis { axis }) } else { Ok(()) }
+pub(super) fn not_empty(axis: &'static str, len: usize) -> Result<(), ExtentError> {
+    if len == 0 { Err(ExtentError::EmptyAxis { axis }) } else { Ok(()) }
 }

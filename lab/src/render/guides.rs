@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::error::{RenderError, not_empty};
 use super::scene::Scene;
-use fsot::ConfigError;
+use fsot::config::RangeError;
 
 /// The surface in the middle of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,7 +80,7 @@ impl Guides {
                 ),
             ];
             if let Some((name, value, _, expected)) = checks.into_iter().find(|check| !check.2(check.1)) {
-                return Err(ConfigError::OutOfRange { name, value, expected }.into());
+                return Err(RangeError::new(name, value, expected).into());
             }
         }
         Ok(Self { height, width, pixels })

@@ -7,7 +7,7 @@
 use super::error::RenderError;
 use super::film::Film;
 use super::reference::Reference;
-use fsot::ConfigError;
+use fsot::config::RangeError;
 use fsot::kernel::{SpatialKernel, TemporalKernel};
 
 /// Guards relative errors where the reference is dark.
@@ -35,7 +35,7 @@ impl ImageFilter {
     pub fn gaussian(sigma_px: f64) -> Result<Self, RenderError> {
         if !(sigma_px > 0.0 && sigma_px <= 1000.0) {
             let (name, expected) = ("sigma_px", "above 0, at most 1000");
-            return Err(ConfigError::OutOfRange { name, value: sigma_px, expected }.into());
+            return Err(RangeError::new(name, sigma_px, expected).into());
         }
         let tap = |k: u32| (-(f64::from(k) / sigma_px).powi(2)).exp();
         let half = (0..).map(tap).take_while(|&tap| tap > 1e-9).collect();

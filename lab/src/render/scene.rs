@@ -48,7 +48,7 @@ impl Object {
     }
 }
 
-/// Everything that is rendered. PrefixLengths are in scene units, `+y` is up, radiance is linear luminance.
+/// Everything that is rendered. Lengths are in scene units, `+y` is up, radiance is linear luminance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// Name, also of cached references; letters, digits and underscores.

@@ -4,7 +4,7 @@
 //!     <https://doi.org/10.1145/2897839.2927430>.
 
 use super::anneal::{self, Cooling, Law, Neighbours, Pairs};
-use fsot::ConfigError;
+use crate::samplers::SamplerError;
 use fsot::Extent;
 use fsot::SampleTable;
 use fsot::kernel::{Kernel, SpatialKernel, TemporalKernel};
@@ -52,7 +52,7 @@ impl DitherMask {
     ///
     /// # Errors
     /// An empty or oversized extent; more than one sample per pixel; a parameter outside its range.
-    pub fn table(&self) -> Result<SampleTable, ConfigError> {
+    pub fn table(&self) -> Result<SampleTable, SamplerError> {
         let Self { extent, dims, sigma_px, sigma_value, cooling, seed } = *self;
         super::one_sample(&extent, dims)?;
         cooling.validate()?;

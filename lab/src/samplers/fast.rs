@@ -4,9 +4,10 @@
 //!     rendering", PACMCGIT 7(1), <https://doi.org/10.1145/3651283>.
 
 use super::anneal::{self, Cooling, Law, Neighbours, Pairs, autocorrelation};
-use fsot::ConfigError;
+use crate::samplers::SamplerError;
 use fsot::Extent;
 use fsot::SampleTable;
+use fsot::config::RangeError;
 use fsot::kernel::{Kernel, SpatialKernel, TemporalKernel};
 
 /// How a filter-adapted table is made.
@@ -54,13 +55,13 @@ impl Fast {
     ///
     /// # Errors
     /// An empty or oversized extent; more than one sample per pixel; no kernel or a bad one; a bad cooling.
-    pub fn table(&self) -> Result<SampleTable, ConfigError> {
+    pub fn table(&self) -> Result<SampleTable, SamplerError> {
         let Self { extent, dims, kernels, cooling, seed } = self;
         super::one_sample(extent, *dims)?;
         cooling.validate()?;
         if kernels.is_empty() {
             let expected = "of at least 1";
-            return Err(ConfigError::OutOfRange { name: "the number of kernels", value: 0.0, expected });
+            return Err(RangeError::new("the number of kernels", 0.0, expected).into());
         }
         let neighbours = Neighbours::new(&autocorrelation(kernels, extent)?, extent, 1e-3);
         let values = anneal::nets(extent, *dims, *seed);

@@ -11,9 +11,10 @@ use rayon::prelude::*;
 use super::anneal::{self, Cooling, Dots, Neighbours};
 use super::mixed;
 use crate::random::{self, Purpose};
-use fsot::ConfigError;
+use crate::samplers::SamplerError;
 use fsot::Extent;
 use fsot::SampleTable;
+use fsot::config::RangeError;
 use fsot::kernel::{Kernel, SpatialKernel, TemporalKernel};
 
 /// How the keys are arranged.
@@ -61,11 +62,11 @@ impl ScramblingKeys {
     ///
     /// # Errors
     /// An empty or oversized extent; samples that are no power of two; a parameter outside its range.
-    pub fn table(&self) -> Result<SampleTable, ConfigError> {
+    pub fn table(&self) -> Result<SampleTable, SamplerError> {
         let Self { extent, dims, sigma_px, cooling, seed, .. } = *self;
         extent.validate(dims)?;
         cooling.validate()?;
-        let out_of_range = |name, value, expected| Err(ConfigError::OutOfRange { name, value, expected });
+        let out_of_range = |name, value, expected| Err(RangeError::new(name, value, expected).into());
         if !extent.spp.is_power_of_two() || extent.spp > 1 << 16 {
             let expected = "that is a power of two, at most 65536";
             return out_of_range("spp", extent.spp as f64, expected);

@@ -26,6 +26,7 @@
 
 mod anneal;
 mod dither;
+mod error;
 mod fast;
 mod keys;
 mod pattern;
@@ -39,6 +40,7 @@ mod white;
 
 pub use anneal::Cooling;
 pub use dither::DitherMask;
+pub use error::SamplerError;
 pub use fast::Fast;
 pub use keys::ScramblingKeys;
 pub use pattern::{Pattern, Shifted};
@@ -49,8 +51,8 @@ pub use stratified::stratified;
 pub use table::TableSampler;
 pub use white::WhiteNoise;
 
-use fsot::ConfigError;
 use fsot::SampleTable;
+use fsot::config::RangeError;
 use fsot::{Extent, Site};
 
 /// Random numbers of a renderer, as a pure function of where they are used.
@@ -83,23 +85,23 @@ fn mixed(seed: u64, words: &[u64]) -> u64 {
 }
 
 /// Checks the extent of a table that has one sample per pixel by construction.
-fn one_sample(extent: &Extent, dims: usize) -> Result<(), ConfigError> {
+fn one_sample(extent: &Extent, dims: usize) -> Result<(), SamplerError> {
     extent.validate(dims)?;
     if extent.spp > 1 {
         let expected = "of 1: the method arranges one sample per pixel";
-        return Err(ConfigError::OutOfRange { name: "spp", value: extent.spp as f64, expected });
+        return Err(RangeError::new("spp", extent.spp as f64, expected).into());
     }
     Ok(())
 }
 
 /// `1 / sigma²` of a similarity between values.
-fn steepness(sigma_value: f64) -> Result<f32, ConfigError> {
+fn steepness(sigma_value: f64) -> Result<f32, SamplerError> {
     let steepness = (sigma_value * sigma_value).recip() as f32;
     if sigma_value > 0.0 && steepness > 0.0 && steepness.is_finite() {
         return Ok(steepness);
     }
     let expected = "above 0, neither tiny nor huge: the papers use 1";
-    Err(ConfigError::OutOfRange { name: "sigma_value", value: sigma_value, expected })
+    Err(RangeError::new("sigma_value", sigma_value, expected).into())
 }
 
 /// The table in which site `i` has the value `ids[i]` of `[id][dim]`.

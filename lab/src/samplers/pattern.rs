@@ -3,10 +3,10 @@
 use std::f64::consts::PI;
 
 use super::{Sampler, mixed};
-use fsot::ConfigError;
+use crate::samplers::SamplerError;
 use fsot::Site;
-use fsot::config::BELOW_ONE;
-use fsot::config::MOST_DIMS;
+use fsot::config::{BELOW_ONE, MOST_DIMS};
+use fsot::config::{ExtentError, RangeError};
 use fsot::random::kronecker_steps;
 
 /// A finite list of points of `[0, 1)^dims`.
@@ -30,7 +30,7 @@ impl Pattern {
     ///
     /// # Errors
     /// 0 points or more than 65536; an empty vector or one of more than 64 entries.
-    pub fn rank1(points: usize, generator: &[u64]) -> Result<Self, ConfigError> {
+    pub fn rank1(points: usize, generator: &[u64]) -> Result<Self, SamplerError> {
         check(points, MOST_POINTS, generator.len())?;
         let n = points as u64;
         let values = (0..n)
@@ -52,7 +52,7 @@ impl Pattern {
     ///
     /// # Errors
     /// 0 points or more than 4096; 0 dimensions or more than 64.
-    pub fn korobov(points: usize, dims: usize) -> Result<Self, ConfigError> {
+    pub fn korobov(points: usize, dims: usize) -> Result<Self, SamplerError> {
         check(points, MOST_SEARCHED, dims)?;
         let n = points as u64;
         let factors: Vec<f64> = (0..n)
@@ -82,7 +82,7 @@ impl Pattern {
     ///
     /// # Errors
     /// 0 points or more than 65536; 0 dimensions or more than 64.
-    pub fn kronecker(points: usize, dims: usize) -> Result<Self, ConfigError> {
+    pub fn kronecker(points: usize, dims: usize) -> Result<Self, SamplerError> {
         check(points, MOST_POINTS, dims)?;
         let steps = kronecker_steps(dims);
         let values =
@@ -94,7 +94,7 @@ impl Pattern {
     ///
     /// # Errors
     /// 0 points or more than 65536; 0 dimensions or more than 64.
-    pub fn sobol(points: usize, dims: usize, seed: u64) -> Result<Self, ConfigError> {
+    pub fn sobol(points: usize, dims: usize, seed: u64) -> Result<Self, SamplerError> {
         check(points, MOST_POINTS, dims)?;
         let scramble = (mixed(seed, &[0x9a7]) >> 32) as u32;
         let point = |i: u32| (0..dims as u32).map(move |dim| sobol_burley::sample(i, dim, scramble));
@@ -122,19 +122,19 @@ pub(super) fn gcd(a: u64, b: u64) -> u64 {
     if b == 0 { a } else { gcd(b, a % b) }
 }
 
-fn check(points: usize, most: usize, dims: usize) -> Result<(), ConfigError> {
+fn check(points: usize, most: usize, dims: usize) -> Result<(), SamplerError> {
     for (axis, len) in [("points", points), ("dims", dims)] {
         if len == 0 {
-            return Err(ConfigError::EmptyAxis { axis });
+            return Err(ExtentError::EmptyAxis { axis }.into());
         }
     }
     if points > most {
         let expected = if most == MOST_POINTS { "of at most 65536" } else { "of at most 4096" };
-        return Err(ConfigError::OutOfRange { name: "points", value: points as f64, expected });
+        return Err(RangeError::new("points", points as f64, expected).into());
     }
     if dims > MOST_DIMS {
         let expected = "of at most 64";
-        return Err(ConfigError::OutOfRange { name: "dims", value: dims as f64, expected });
+        return Err(RangeError::new("dims", dims as f64, expected).into());
     }
     Ok(())
 }
@@ -238,7 +238,7 @@ mod tests {
 
     #[test]
     fn mistakes_are_named() {
-        let text = |made: Result<Pattern, ConfigError>| made.unwrap_err().to_string();
+        let text = |made: Result<Pattern, SamplerError>| made.unwrap_err().to_string();
         assert!(text(Pattern::korobov(0, 2)).contains("points is 0"));
         assert!(text(Pattern::korobov(5000, 2)).contains("points is 5000: give a value of at most 4096"));
         assert!(text(Pattern::kronecker(70_000, 2)).contains("at most 65536"));

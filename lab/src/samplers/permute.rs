@@ -11,9 +11,10 @@ use rand::RngExt;
 use super::pattern::gcd;
 use super::{Sampler, mixed};
 use crate::random::{self, Purpose};
-use fsot::ConfigError;
+use crate::samplers::SamplerError;
 use fsot::SampleTable;
 use fsot::Site;
+use fsot::config::{ExtentError, RangeError};
 
 /// Histogram sampling (the paper's section 3): at every pixel the estimate whose rank among `estimates` is the mask's
 /// value there.
@@ -24,9 +25,9 @@ use fsot::Site;
 ///
 /// # Errors
 /// No estimate, or one whose length is not that of the mask.
-pub fn histogram_sampling(estimates: &[&[f64]], mask: &[f32]) -> Result<Vec<f64>, ConfigError> {
+pub fn histogram_sampling(estimates: &[&[f64]], mask: &[f32]) -> Result<Vec<f64>, SamplerError> {
     if estimates.is_empty() {
-        return Err(ConfigError::EmptyAxis { axis: "the number of estimates" });
+        return Err(ExtentError::EmptyAxis { axis: "the number of estimates" }.into());
     }
     for estimate in estimates {
         check_pixels("the number of pixels of an estimate", estimate.len(), mask.len())?;
@@ -41,15 +42,8 @@ pub fn histogram_sampling(estimates: &[&[f64]], mask: &[f32]) -> Result<Vec<f64>
     Ok(mask.iter().enumerate().map(pick).collect())
 }
 
-fn check_pixels(name: &'static str, given: usize, pixels: usize) -> Result<(), ConfigError> {
-    if given == pixels {
-        return Ok(());
-    }
-    Err(ConfigError::OutOfRange {
-        name,
-        value: given as f64,
-        expected: "for each pixel of the mask or picture",
-    })
+fn check_pixels(name: &'static str, given: usize, pixels: usize) -> Result<(), RangeError> {
+    RangeError::check(given == pixels, name, given as f64, "for each pixel of the mask or picture")
 }
 
 /// The temporal algorithm (the paper's section 4): seeds of a picture that change places after every frame.
@@ -91,14 +85,14 @@ impl SeedPermutation {
     ///
     /// # Errors
     /// An empty picture; a picture that is no multiple of the mask, or is larger than 2³¹ pixels.
-    pub fn new([height, width]: [usize; 2], mask: &SampleTable, seed: u64) -> Result<Self, ConfigError> {
+    pub fn new([height, width]: [usize; 2], mask: &SampleTable, seed: u64) -> Result<Self, SamplerError> {
         let picture = fsot::Extent { frames: 1, height, width, spp: 1 };
         picture.validate(1)?;
         let extent = mask.extent();
         for (name, len, tile) in [("height", height, extent.height), ("width", width, extent.width)] {
             if !len.is_multiple_of(tile) {
                 let expected = "that is a multiple of the mask's";
-                return Err(ConfigError::OutOfRange { name, value: len as f64, expected });
+                return Err(RangeError::new(name, len as f64, expected).into());
             }
         }
         let at = |site: usize| {
@@ -142,7 +136,7 @@ impl SeedPermutation {
     ///
     /// # Errors
     /// Not as many values as pixels; nothing is exchanged then.
-    pub fn advance(&mut self, values: &[f64]) -> Result<(), ConfigError> {
+    pub fn advance(&mut self, values: &[f64]) -> Result<(), SamplerError> {
         check_pixels("the number of values", values.len(), self.seeds.len())?;
         self.sort(values);
         let [dy, dx] = self.displacement(self.frame);

@@ -5,7 +5,7 @@
 
 use super::anneal::{self, Cooling, Law, Neighbours, Pairs};
 use super::void_cluster;
-use fsot::ConfigError;
+use crate::samplers::SamplerError;
 use fsot::Extent;
 use fsot::SampleTable;
 use fsot::kernel::{Kernel, SpatialKernel, TemporalKernel};
@@ -57,7 +57,7 @@ impl Stbn {
     ///
     /// # Errors
     /// An empty or oversized extent; more than one sample per pixel; a parameter outside its range.
-    pub fn table(&self) -> Result<SampleTable, ConfigError> {
+    pub fn table(&self) -> Result<SampleTable, SamplerError> {
         let Self { extent, dims, deviation_px, deviation_frames, sigma_value, cooling, seed } = *self;
         super::one_sample(&extent, dims)?;
         cooling.validate()?;

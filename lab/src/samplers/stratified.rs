@@ -6,7 +6,7 @@ use rand::RngExt;
 use rand::seq::SliceRandom;
 
 use crate::random::{self, Purpose};
-use fsot::ConfigError;
+use crate::samplers::SamplerError;
 use fsot::Extent;
 use fsot::SampleTable;
 
@@ -18,7 +18,7 @@ use fsot::SampleTable;
 ///
 /// # Errors
 /// An empty or oversized extent.
-pub fn stratified(extent: Extent, dims: usize, seed: u64) -> Result<SampleTable, ConfigError> {
+pub fn stratified(extent: Extent, dims: usize, seed: u64) -> Result<SampleTable, SamplerError> {
     extent.validate(dims)?;
     let spp = extent.spp;
     let rows = (1..=spp.isqrt()).rev().find(|rows| spp.is_multiple_of(*rows)).unwrap_or(1);
@@ -46,6 +46,7 @@ pub fn stratified(extent: Extent, dims: usize, seed: u64) -> Result<SampleTable,
 mod tests {
     use super::*;
     use fsot::Site;
+    use fsot::config::ExtentError;
 
     #[test]
     fn every_cell_holds_one_sample() {
@@ -65,6 +66,6 @@ mod tests {
     #[test]
     fn an_empty_axis_is_named() {
         let extent = Extent { frames: 1, height: 0, width: 3, spp: 1 };
-        assert_eq!(stratified(extent, 2, 0), Err(ConfigError::EmptyAxis { axis: "height" }));
+        assert_eq!(stratified(extent, 2, 0), Err(ExtentError::EmptyAxis { axis: "height" }.into()));
     }
 }

@@ -1,13 +1,15 @@
 //! Mistakes are refused with the values that show them, before any work.
 
-use fsot::{ConfigError, Extent, SampleTable};
+use fsot::config::ExtentError;
+use fsot::{Extent, SampleTable};
+use fsot_lab::samplers::SamplerError;
 use fsot_lab::samplers::{
     Cooling, DitherMask, Fast, ScramblingKeys, SeedPermutation, Stbn, histogram_sampling,
 };
 
 use crate::common::tile;
 
-fn says(made: Result<SampleTable, ConfigError>, words: &str) {
+fn says(made: Result<SampleTable, SamplerError>, words: &str) {
     let complaint = made.unwrap_err().to_string();
     assert!(complaint.contains(words), "{words} is missing in: {complaint}");
 }
@@ -53,12 +55,15 @@ fn a_picture_that_no_mask_tiles_is_refused() {
         error.to_string().contains("width is 20: give a value that is a multiple of the mask's"),
         "{error}"
     );
-    assert!(matches!(SeedPermutation::new([0, 8], &mask, 0), Err(ConfigError::EmptyAxis { axis: "height" })));
+    assert!(matches!(
+        SeedPermutation::new([0, 8], &mask, 0),
+        Err(SamplerError::Extent(ExtentError::EmptyAxis { axis: "height" }))
+    ));
 }
 
 #[test]
 fn pictures_of_another_size_are_named() {
-    let says = |error: ConfigError, text: &str| assert!(error.to_string().contains(text), "{error}");
+    let says = |error: SamplerError, text: &str| assert!(error.to_string().contains(text), "{error}");
     says(histogram_sampling(&[], &[0.5]).unwrap_err(), "the number of estimates is 0");
     says(histogram_sampling(&[&[1.0, 2.0]], &[0.5]).unwrap_err(), "the number of pixels of an estimate is 2");
     let mask = SampleTable::white_noise(tile(1, 4, 1), 1, 0).unwrap();

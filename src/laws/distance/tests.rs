@@ -4,7 +4,6 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::targets::Target;
 
 /// Distribution function of a sum of at most three independent uniforms on `[0, wᵢ]`: the alternating sum, harmless
 /// for few widths of similar size.
@@ -92,7 +91,7 @@ proptest! {
     /// for both costs, and its cost is what is returned. (Splitting cells cannot do better: Birkhoff.)
     #[test]
     fn no_assignment_is_cheaper(direction in direction(), shares in shares(7)) {
-        let law = Target::UniformCube.project(&direction);
+        let law = Projected::of_cube(&direction);
         let points = along(&direction, &shares);
         let n = points.len();
         let cell = |i: usize| (i as f64 / n as f64, (i + 1) as f64 / n as f64);
@@ -125,7 +124,7 @@ proptest! {
         weights in prop::collection::vec(0.01..1.0_f64, 40),
         weighted in any::<bool>(),
     ) {
-        let law = Target::UniformCube.project(&direction);
+        let law = Projected::of_cube(&direction);
         let mut projections = along(&direction, &shares);
         // Points beyond the support are dearer by their distance; the area is taken between the outermost nodes.
         let weights = weighted.then(|| &weights[..projections.len()]);

@@ -34,7 +34,7 @@ pub fn run(mut optimizer: Optimizer, until: Until, share: f64) -> Result<(Sample
 /// Steps and slices per class of a run, by taking its first step.
 fn plan(optimizer: &mut Optimizer, until: Until) -> Result<(u64, f64), Failure> {
     let mut steps = 0;
-    let report = optimizer.run(until, |first| {
+    let report = optimizer.run_observed(until, |first| {
         steps = first.steps;
         ControlFlow::Break(())
     })?;

@@ -17,7 +17,6 @@ mod plain;
 mod report;
 
 use std::fs;
-use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use clap::Parser;
@@ -140,7 +139,7 @@ fn rows(cases: &[Case], variants: Vec<Variant>) -> Result<Vec<Row>, Failure> {
 fn measure(case: &Case, variant: &Variant) -> Result<Outcome, Failure> {
     let judge = Judge::new(case.extent, case.integrands, case.bound_slices)?;
     let outcomes = (0..case.seeds).map(|seed| -> Result<Outcome, Failure> {
-        let default = Config { seed, ..Config::new(case.extent, 2) };
+        let default = Config::new(case.extent, 2).with_seed(seed);
         let mut config = default.clone();
         (variant.change)(&mut config);
         let slices_per_class = match variant.effort {
@@ -174,7 +173,7 @@ fn make(config: Config, making: Making, until: Until) -> Result<(SampleTable, f6
     if let Making::MeanOfLast(share) = making {
         return averaged::run(optimizer, until, share);
     }
-    let report = optimizer.run(until, |_| ControlFlow::Continue(()))?;
+    let report = optimizer.run(until)?;
     Ok((optimizer.into_table(), report.work.slices_per_class as f64, report.elapsed.as_secs_f64()))
 }
 

@@ -5,8 +5,8 @@
 
 use std::fmt::Write;
 
-use fsot::Slice;
 use fsot::config::{BELOW_ONE, Role};
+use fsot::objective::Slice;
 use fsot::targets::Projected;
 use fsot::{Config, Extent, Objective, SampleTable};
 use rand::{RngExt, SeedableRng};
@@ -86,8 +86,8 @@ fn optimise(
     targets: Targets,
     draws: Draws,
 ) -> Result<SampleTable, Failure> {
-    let config = Config { seed, ..Config::new(extent, 2) };
-    let objective = Objective::new(extent, config.dims, &config.domains, &config.terms, &config.slicing)?;
+    let config = Config::new(extent, 2).with_seed(seed);
+    let objective = Objective::new(&config)?;
     let mut points: Vec<f64> =
         SampleTable::white_noise(extent, 2, seed)?.values().iter().map(|&value| value.into()).collect();
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);

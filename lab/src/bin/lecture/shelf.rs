@@ -2,13 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
-use std::ops::ControlFlow;
 use std::time::Instant;
 
 use fsot::Until;
 use fsot::classes::FilterForm;
-use fsot::config::Work;
-use fsot::config::{DimensionGroup, Term};
+use fsot::config::{DimensionGroup, Term, Work};
 use fsot::kernel::{SpatialKernel, TemporalKernel};
 use fsot::{Config, Extent, Kernel, Optimizer, SampleTable};
 use fsot_lab::samplers::{DitherMask, Fast, ScramblingKeys, Stbn, stratified};
@@ -133,11 +131,11 @@ impl Shelf {
                 table.cooling.sweeps = sweeps(if frames > 1 { 150 } else { 2000 });
                 table.table()?
             }
-            Maker::Ours => ours(Config { seed, ..Config::new(extent, dims) }, tile, effort)?,
+            Maker::Ours => ours(Config::new(extent, dims).with_seed(seed), tile, effort)?,
             Maker::OursTaa => {
                 let groups = DimensionGroup::pairs_and_whole(dims);
                 let terms = Term::blue_noise(&[for_taa()], FilterForm::LevelSets, &groups, &extent);
-                ours(Config { seed, terms, ..Config::new(extent, dims) }, tile, effort)?
+                ours(Config::new(extent, dims).with_seed(seed).with_terms(terms), tile, effort)?
             }
         };
         self.seconds.push((recipe, begin.elapsed().as_secs_f64()));
@@ -165,7 +163,7 @@ fn ours(config: Config, tile: usize, effort: f64) -> Result<SampleTable, Failure
     let slices_per_class = (slices * effort * room / spp as f64).ceil() as u64;
     let sweeps = (sweeps * effort * room / (spp * spp) as f64).ceil() as u64;
     let mut optimizer = Optimizer::new(config)?;
-    optimizer.run(Until::Work(Work { slices_per_class, sweeps }), |_| ControlFlow::Continue(()))?;
+    optimizer.run(Until::Work(Work { slices_per_class, sweeps }))?;
     Ok(optimizer.into_table())
 }
 

@@ -1,7 +1,5 @@
 //! Our ways to make a table. Another one is another line of [`METHODS`].
 
-use std::ops::ControlFlow;
-
 use fsot::config::{Descent, Work};
 use fsot::{Config, ConfigError, Optimizer, SampleTable, Until};
 
@@ -40,12 +38,11 @@ pub const METHODS: &[Method] = &[
 ];
 
 fn slices(descent: Descent, config: &Config, effort: Effort) -> Result<Made, ConfigError> {
-    work(&Config { descent, ..config.clone() }, effort.slices, 0)
+    work(&config.clone().with_descent(descent), effort.slices, 0)
 }
 
 fn work(config: &Config, slices_per_class: u64, sweeps: u64) -> Result<Made, ConfigError> {
     let mut optimizer = Optimizer::new(config.clone())?;
-    let report =
-        optimizer.run(Until::Work(Work { slices_per_class, sweeps }), |_| ControlFlow::Continue(()))?;
+    let report = optimizer.run(Until::Work(Work { slices_per_class, sweeps }))?;
     Ok(Made { table: optimizer.into_table(), seconds: report.elapsed.as_secs_f64(), slices: report.slices })
 }

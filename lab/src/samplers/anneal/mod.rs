@@ -22,8 +22,9 @@ pub(super) use neighbours::{Neighbours, autocorrelation};
 pub(super) use pairs::{Law, Pairs};
 
 use crate::random::{self, Purpose};
-use fsot::ConfigError;
+use crate::samplers::SamplerError;
 use fsot::Extent;
+use fsot::config::RangeError;
 
 /// Exponential cooling: the temperature `c_k` falls from `start` to `end` by equal factors.
 ///
@@ -41,8 +42,8 @@ pub struct Cooling {
 
 impl Cooling {
     /// Checks the ranges.
-    pub(super) fn validate(&self) -> Result<(), ConfigError> {
-        let bad = |name, value, expected| Err(ConfigError::OutOfRange { name, value, expected });
+    pub(super) fn validate(&self) -> Result<(), SamplerError> {
+        let bad = |name, value, expected| Err(RangeError::new(name, value, expected).into());
         if !(self.start > 0.0 && self.start.is_finite()) {
             return bad("the first temperature", self.start, "above 0 and finite");
         }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::LANES;
-use fsot::ConfigError;
+use crate::samplers::SamplerError;
 use fsot::Extent;
 use fsot::kernel::{Kernel, Tap};
 
@@ -22,7 +22,7 @@ pub(in crate::samplers) type Weights = BTreeMap<(i32, i32, i32), f64>;
 impl Neighbours {
     /// The sum of the taps of kernels, each relative to its own largest, down to their truncations. Temporal parts
     /// count both ways.
-    pub fn of_kernels(kernels: &[Kernel], extent: &Extent) -> Result<Self, ConfigError> {
+    pub fn of_kernels(kernels: &[Kernel], extent: &Extent) -> Result<Self, SamplerError> {
         let mut weights = Weights::new();
         for kernel in kernels {
             for Tap { dt, dy, dx, weight } in kernel.taps(extent)? {
@@ -102,7 +102,7 @@ impl Run {
 pub(in crate::samplers) fn autocorrelation(
     kernels: &[Kernel],
     extent: &Extent,
-) -> Result<Weights, ConfigError> {
+) -> Result<Weights, SamplerError> {
     let centred = |d: i32, len: usize| {
         let wrapped = d.rem_euclid(len as i32);
         if 2 * wrapped > len as i32 { wrapped - len as i32 } else { wrapped }

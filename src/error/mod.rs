@@ -1,0 +1,19 @@
+//! What a caller got wrong, with the values that show it, by owner. Every message ends in what to do about it.
+
+mod config;
+mod files;
+mod kernel;
+mod objective;
+#[cfg(feature = "image")]
+mod picture;
+mod shape;
+mod target;
+
+pub use self::config::{ClassError, ConfigError, TermError};
+pub use self::files::{FormatError, TableError};
+pub use self::kernel::KernelError;
+pub use self::objective::{ObjectiveError, SliceError};
+#[cfg(feature = "image")]
+pub use self::picture::PictureError;
+pub use self::shape::{ExtentError, GroupError, RangeError};
+pub use self::target::TargetError;

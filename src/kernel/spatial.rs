@@ -1,0 +1,90 @@
+//! Filter weights over the pixels of a frame.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::taps::{NEGLIGIBLE, binomial, centred, check_taps, checked_size, drop_below, gaussian};
+use crate::error::KernelError;
+use crate::table::extent::Extent;
+
+/// Filter weights over the pixels of a frame, centred on the pixel that is filtered.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SpatialKernel {
+    /// `exp(-r² / sigma_px²)` with `r` in pixels; `sigma_px` in `(0, 1e6]`. The papers use 2.1.
+    Gaussian {
+        /// Width in pixels; the standard deviation is `sigma_px / √2`.
+        sigma_px: f64,
+    },
+    /// Equal weights on `size` × `size` pixels; an even size reaches one pixel further right and down.
+    Box {
+        /// Side in pixels.
+        size_px: usize,
+    },
+    /// Outer product of the binomial coefficients of `size_px` taps, centred as [`SpatialKernel::Box`] is.
+    Binomial {
+        /// Side in pixels, at most 1000.
+        size_px: usize,
+    },
+    /// Any list of taps; repeated offsets add up.
+    Taps(Vec<SpatialTap>),
+}
+
+/// One tap of a custom spatial kernel.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SpatialTap {
+    /// Rows down from the filtered pixel.
+    pub dy: i32,
+    /// Columns right from the filtered pixel.
+    pub dx: i32,
+    /// Weight, finite and at least 0.
+    pub weight: f64,
+}
+
+impl SpatialKernel {
+    /// The Gaussian with this *standard deviation* in pixels, `exp(-r² / (2 s²))`.
+    pub fn gaussian_from_deviation(deviation_px: f64) -> Self {
+        SpatialKernel::Gaussian { sigma_px: deviation_px * std::f64::consts::SQRT_2 }
+    }
+
+    /// Weights of the offsets `(dy, dx)` on a tile that wraps.
+    pub(super) fn folded(&self, extent: &Extent) -> Result<BTreeMap<(i32, i32), f64>, KernelError> {
+        let mut folded = BTreeMap::new();
+        let axis = match self {
+            SpatialKernel::Gaussian { sigma_px } => gaussian("sigma_px", *sigma_px)?,
+            SpatialKernel::Box { size_px } => vec![1.0; checked_size("size_px", *size_px)?],
+            SpatialKernel::Binomial { size_px } => binomial("size_px", *size_px)?,
+            SpatialKernel::Taps(taps) => {
+                check_taps("the spatial kernel", taps.iter().map(|tap| tap.weight))?;
+                for tap in taps {
+                    let offset =
+                        (centred(tap.dy.into(), extent.height), centred(tap.dx.into(), extent.width));
+                    *folded.entry(offset).or_default() += tap.weight;
+                }
+                return Ok(folded);
+            }
+        };
+        // A Gaussian is given by its right half, the others by all their taps.
+        let symmetric = matches!(self, SpatialKernel::Gaussian { .. });
+        let fold = |len: usize| {
+            let mut folded = BTreeMap::new();
+            for (tap, &weight) in axis.iter().enumerate() {
+                let offset = if symmetric { tap as i64 } else { tap as i64 - (axis.len() as i64 - 1) / 2 };
+                *folded.entry(centred(offset, len)).or_insert(0.0) += weight;
+                if symmetric && tap > 0 {
+                    *folded.entry(centred(-offset, len)).or_insert(0.0) += weight;
+                }
+            }
+            drop_below(&mut folded, NEGLIGIBLE);
+            folded
+        };
+        let (rows, columns) = (fold(extent.height), fold(extent.width));
+        for (&dy, &row) in &rows {
+            for (&dx, &column) in &columns {
+                folded.insert((dy, dx), row * column);
+            }
+        }
+        Ok(folded)
+    }
+}

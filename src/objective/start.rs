@@ -1,0 +1,48 @@
+//! Where an optimisation starts, if not from white noise.
+
+use super::Objective;
+use super::plan::PlannedTerm;
+use crate::config::Role;
+use crate::random::kronecker_steps;
+use crate::table::domain::Domain;
+
+/// Jitter of a start, in distances between neighbours: with less, the order of the sequence stays visible.
+const JITTER: f64 = 3.0;
+
+impl Objective {
+    /// Places samples by their targets: each by that of the smallest classes that hold it, whose samples become a Kronecker
+    /// sequence at a random place, jittered by some distances between neighbours and warped into the target. Parts of a
+    /// target then hold as many samples as they should, up to a few: no slice brings one from one part to another
+    /// without leaving others on the way.
+    pub(crate) fn place(&self, points: &mut [f32]) {
+        let mut terms: Vec<&PlannedTerm> =
+            self.terms.iter().filter(|term| term.spec.role == Role::Descend).collect();
+        if terms.iter().all(|term| term.spec.target.warp().is_none()) {
+            return;
+        }
+        terms.sort_by(|a, b| b.family.mean_size().total_cmp(&a.family.mean_size()));
+        let noise = points.to_vec();
+        let (mut samples, mut place) = (Vec::new(), Vec::new());
+        for term in terms {
+            let Some(warp) = term.spec.target.warp() else { continue };
+            let steps = kronecker_steps(term.spec.dims.len());
+            for index in 0..term.family.visits() {
+                term.family.select(term.family.visited_member(index), 0.0, &mut samples);
+                let Some(&origin) = samples.first() else { continue };
+                let shift = |dim: &usize| f64::from(noise[origin as usize * self.dims + dim]);
+                let apart = JITTER * (samples.len() as f64).powf(-1.0 / steps.len() as f64);
+                for (rank, &sample) in samples.iter().enumerate() {
+                    let first = sample as usize * self.dims;
+                    let jitter = |dim: &usize| apart * f64::from(noise[first + dim]);
+                    let along = term.spec.dims.iter().map(|dim| shift(dim) + jitter(dim)).zip(&steps);
+                    place.clear();
+                    place.extend(along.map(|(start, step)| (start + rank as f64 * step).fract()));
+                    warp.place(&mut place);
+                    for (dim, place) in term.spec.dims.iter().zip(&place) {
+                        points[first + dim] = Domain::Interval.admit(*place as f32);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Runs: steps along the schedules of the configuration, until they are done.
+
+use std::ops::ControlFlow;
+use std::sync::OnceLock;
+use std::time::{Duration, Instant};
+
+use super::report::{Current, Plateau, RunReport, StepReport};
+use super::{Optimizer, SliceStep};
+use crate::config::{EndReason, Until, Work};
+use crate::error::ConfigError;
+use crate::slices::Slices;
+use crate::sweeps;
+
+impl Optimizer {
+    /// Takes steps until `until`: see [`Optimizer::run_observed`].
+    ///
+    /// # Errors
+    /// As [`Optimizer::run_observed`].
+    pub fn run(&mut self, until: Until) -> Result<RunReport, ConfigError> {
+        self.run_observed(until, |_| ControlFlow::Continue(()))
+    }
+
+    /// Takes steps until `until`, or until `observe` breaks off, which is called after each step. The table keeps what was
+    /// reached.
+    ///
+    /// A run begins with fresh moments and at the start of the schedules; its slices and sweeps go on where the last
+    /// run's ended.
+    ///
+    /// # Errors
+    /// A number of seconds or an improvement outside its range; sweeps of an objective that has no closed form. Nothing is
+    /// changed then.
+    pub fn run_observed(
+        &mut self,
+        until: Until,
+        observe: impl FnMut(&StepReport) -> ControlFlow<()> + Send,
+    ) -> Result<RunReport, ConfigError> {
+        // On a thread of the pool from here on, instead of going there and back for each step.
+        rayon::scope(|_| self.run_in_pool(until, observe))
+    }
+
+    fn run_in_pool(
+        &mut self,
+        until: Until,
+        mut observe: impl FnMut(&StepReport) -> ControlFlow<()>,
+    ) -> Result<RunReport, ConfigError> {
+        // A closure that panicked in an earlier run may have left one behind.
+        self.sweeper = None;
+        let work = self.plan(until)?;
+        let Work { slices_per_class, sweeps } = work;
+        let per_step = self.objective.slices_per_class_and_step();
+        let batches = (slices_per_class as f64 / per_step).ceil() as u64;
+        let steps = batches.saturating_add(sweeps.saturating_mul(sweeps::STEPS as u64));
+        self.slices = Slices::new(self.config.descent, self.points.len());
+        let begin = Instant::now();
+        let (mut plateau, loss_slices) = (Plateau::default(), OnceLock::new());
+        let (ended, elapsed) = (EndReason::Finished, Duration::ZERO);
+        let mut report = RunReport { ended, steps: 0, slices: 0, work, elapsed };
+        for step in 0..steps {
+            let (displacement, rate) = if step < batches {
+                let progress = step as f64 / batches as f64;
+                let rate = self.config.descent.rate().at(progress);
+                let SliceStep { displacement, slices } =
+                    self.step_in_pool(rate, self.config.balance.at(progress));
+                report.slices += slices;
+                (displacement, rate)
+            } else {
+                if step == batches {
+                    // Sweeps need the room that batches have taken for themselves.
+                    self.slices.release();
+                }
+                let progress = (step - batches) as f64 / (steps - batches) as f64;
+                let rate = self.config.sweeps.of_a_run(work).at(progress);
+                let part = (step - batches) as usize % sweeps::STEPS;
+                (self.sweep_step(part, rate, self.config.balance.at(progress))?.root(), rate)
+            };
+            report.steps += 1;
+            let current = Current {
+                config: &self.config,
+                objective: &self.objective,
+                points: &self.points,
+                sweeper: self.sweeper.as_ref(),
+                loss_slices: &loss_slices,
+            };
+            let (step, slices, elapsed) = (step + 1, report.slices, begin.elapsed());
+            let seen = StepReport { step, steps, slices, displacement, rate, elapsed, current };
+            if observe(&seen).is_break() {
+                report.ended = EndReason::Stopped;
+                break;
+            }
+            if let Until::Converged { improvement, window_steps, .. } = until
+                && plateau.reached(displacement * displacement, improvement, window_steps)
+            {
+                report.ended = EndReason::Converged;
+                break;
+            }
+        }
+        if sweeps > 0 && report.ended == EndReason::Finished {
+            self.settle(sweeps, self.config.balance.at(1.0));
+        }
+        if let Some(sweeper) = &mut self.sweeper {
+            // A run may be broken off between two balances.
+            sweeper.store(&mut self.points);
+        }
+        report.elapsed = begin.elapsed();
+        // Nobody needs the buffers until the next run.
+        self.slices.release();
+        self.sweeper = None;
+        Ok(report)
+    }
+}

@@ -1,0 +1,84 @@
+//! Data flows one way: a file of the library imports only from rooms below its own.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The rooms from the ground up. Each uses only those before it, and itself.
+const ROOMS: [&str; 19] = [
+    "error",
+    "random",
+    "simd",
+    "named",
+    "laws",
+    "table",
+    "targets",
+    "kernel",
+    "directions",
+    "classes",
+    "transport",
+    "files",
+    "config",
+    "objective",
+    "slices",
+    "sweeps",
+    "metrics",
+    "optimizer",
+    "method",
+];
+
+/// All sources below a folder.
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let nested = entries.flat_map(|path| if path.is_dir() { sources(&path) } else { vec![path] });
+    nested.filter(|path| path.extension().is_some_and(|extension| extension == "rs")).collect()
+}
+
+/// The first segments of all paths `crate::…` outside of comments, those in braces included.
+fn imports(text: &str) -> BTreeSet<String> {
+    let code: String =
+        text.lines().map(|line| line.split("//").next().unwrap_or("")).collect::<Vec<_>>().join("\n");
+    let mut found = BTreeSet::new();
+    for after in code.split("crate::").skip(1) {
+        let listed =
+            after.strip_prefix('{').and_then(|list| list.split('}').next()).map(|list| list.split(','));
+        let paths: Vec<&str> = match listed {
+            Some(paths) => paths.collect(),
+            None => vec![after],
+        };
+        for path in paths {
+            let is_name = |c: &char| c.is_ascii_alphanumeric() || *c == '_';
+            found.insert(path.trim().chars().take_while(is_name).collect());
+        }
+    }
+    found
+}
+
+#[test]
+fn no_file_imports_upwards() {
+    let level: BTreeMap<&str, usize> = ROOMS.iter().enumerate().map(|(at, room)| (*room, at)).collect();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut upward = Vec::new();
+    for path in sources(&root) {
+        let inside = path.strip_prefix(&root).unwrap().with_extension("");
+        let room = inside.iter().next().unwrap().to_str().unwrap();
+        if room == "lib" {
+            continue;
+        }
+        let own = *level.get(room).unwrap_or_else(|| panic!("{room} is no room: give it a level"));
+        for import in imports(&fs::read_to_string(&path).unwrap()) {
+            match level.get(import.as_str()) {
+                Some(&other) if other <= own => {}
+                Some(_) => upward.push(format!("{} imports {import}", path.display())),
+                None => upward.push(format!("{} imports {import} by its name at the root", path.display())),
+            }
+        }
+    }
+    assert!(upward.is_empty(), "{}", upward.join("\n"));
+}
+
+#[test]
+fn imports_are_found() {
+    let text = "use crate::{table::Extent, kernel};\n// crate::optimizer\nlet x = crate::laws::f();";
+    assert!(imports(text).iter().eq(["kernel", "laws", "table"]));
+}
