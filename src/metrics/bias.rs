@@ -1,7 +1,7 @@
 //! Error of the mean over many samples: what no filter takes away.
 
 use super::error_image::Points;
-use super::families::Integrands;
+use super::integrands::Integrands;
 use super::ratios::Ratios;
 use crate::error::ConfigError;
 use crate::table::SampleTable;
@@ -58,7 +58,7 @@ impl Bias {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metrics::{Estimate, Family, Integrand, integrands::Shape};
+    use crate::metrics::{Estimate, Family, Integrand, integrand::Shape};
     use crate::table::extent::Extent;
     use approx::assert_relative_eq;
 

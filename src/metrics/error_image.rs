@@ -2,7 +2,7 @@
 
 use ndarray::Array3;
 
-use super::integrands::Integrand;
+use super::integrand::Integrand;
 use crate::error::ConfigError;
 use crate::table::SampleTable;
 use crate::table::extent::Extent;
@@ -78,7 +78,7 @@ pub(super) fn check_group(group: &[usize], dims: usize) -> Result<(), ConfigErro
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metrics::integrands::Shape;
+    use crate::metrics::integrand::Shape;
     use approx::assert_abs_diff_eq;
 
     #[test]

@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::families::{Family, Integrands};
-use super::integrands::Integrand;
+use super::integrand::Integrand;
+use super::integrands::{Family, Integrands};
 
 /// A mean and the uncertainty that the finite number of integrands leaves.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::families::Integrands;
+use super::integrands::Integrands;
 use super::ratios::Ratios;
 use crate::error::ConfigError;
 
