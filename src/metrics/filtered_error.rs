@@ -2,24 +2,37 @@
 
 use rustfft::num_complex::Complex64;
 
-use super::error_image::Points;
+use super::coordinates::Coordinates;
+use super::error::MeasureError;
 use super::fft::Transform;
 use super::integrands::Integrands;
 use super::ratios::Ratios;
-use crate::error::ConfigError;
+use super::samples::Samples;
 use crate::kernel::{Kernel, TemporalKernel};
-use crate::table::SampleTable;
 use crate::table::extent::Extent;
 
 /// Mean squared error of a table before and after filtering, each as ratio to white noise of the same shape.
 ///
-/// The filter replaces the error image `e` by `Σ_tap w e(p + tap) / Σ_tap w`, which wraps in space and time. The
-/// squared error is averaged over all pixels and frames, then divided by its expectation for white noise,
+/// The filter replaces the error image `e` by `Σ_tap w e(p + tap) / Σ_tap w`, which wraps in space and time.
+/// The squared error is averaged over all pixels and frames, then divided by its expectation for white noise,
 /// `Var f / spp` before and `Var f / spp · Σw² / (Σw)²` after filtering.
-#[derive(Clone, Copy, Debug, PartialEq)]
+///
+/// ```
+/// use fsot::kernel::{SpatialKernel, TemporalKernel};
+/// use fsot::metrics::{FilteredError, Integrands};
+/// use fsot::{Extent, Kernel, SampleTable};
+///
+/// let extent = Extent { frames: 1, height: 16, width: 16, spp: 1 };
+/// let table = SampleTable::white_noise(extent, 2, 0)?;
+/// let eye = Kernel::product(SpatialKernel::Gaussian { sigma_px: 2.1 }, TemporalKernel::None);
+/// let error = FilteredError::measure(&table, &[0, 1], &Integrands::random(2, 16, 0)?, &eye)?;
+/// assert!((0.5..1.5).contains(&error.spatial.mean.mean));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
 pub struct FilteredError {
-    /// Without filter: the error of single pixels. 1 for any table that has one sample per pixel and fills the
-    /// cube uniformly.
+    /// Without filter: the error of single pixels. 1 for any table that has one sample per pixel and fills
+    /// the cube uniformly.
     pub unfiltered: Ratios,
     /// After the spatial part of the kernel alone.
     pub spatial: Ratios,
@@ -27,52 +40,56 @@ pub struct FilteredError {
     pub spatio_temporal: Ratios,
 }
 
-/// Measures the dimension group `dims` of a table with a kernel, over test integrands of as many coordinates.
-///
-/// The kernel's truncation counts: with the default, weights below 0.1 % are dropped. Cost per integrand:
-/// O(samples · dims) to evaluate and O(sites log sites) to filter. Runs on rayon's current pool; the result does
-/// not depend on the number of threads.
-///
-/// # Errors
-/// A bad kernel; a bad dimension group (as in [`super::error_image()`]).
-pub fn filtered_error(
-    table: &SampleTable,
-    dims: &[usize],
-    kernel: &Kernel,
-    integrands: &Integrands,
-) -> Result<FilteredError, ConfigError> {
-    let points = Points::new(table, dims, integrands.dims())?;
-    let extent = table.extent();
-    let meter = Meter::new(&extent, kernel)?;
-    let [unfiltered, spatial, spatio_temporal] = Ratios::over(
-        integrands,
-        || meter.transform.scratch(),
-        |scratch, pair, ratios| {
-            // Two real images ride in one complex transform.
-            scratch.data.fill(Complex64::default());
-            for (site, error) in scratch.data.iter_mut().zip(points.errors(&pair[0])) {
-                site.re = error;
-            }
-            if let Some(second) = pair.get(1) {
-                for (site, error) in scratch.data.iter_mut().zip(points.errors(second)) {
-                    site.im = error;
+impl FilteredError {
+    /// Measures the dimension group `dims` of samples over test integrands of as many coordinates, with a
+    /// kernel.
+    ///
+    /// The kernel's truncation counts: with the default, weights below 0.1 % are dropped. Cost per integrand:
+    /// O(samples · dims) to evaluate and O(sites log sites) to filter. Runs on rayon's current pool; the
+    /// result does not depend on the number of threads.
+    ///
+    /// # Errors
+    /// A dimension group that is empty, repeats a dimension, exceeds those of the samples, or has another
+    /// length than integrands have coordinates; a bad kernel.
+    pub fn measure<'a>(
+        samples: impl Into<Samples<'a>>,
+        dims: &[usize],
+        integrands: &Integrands,
+        kernel: &Kernel,
+    ) -> Result<Self, MeasureError> {
+        let points = Coordinates::gather(samples, dims)?.fitting("an integrand", integrands.dims())?;
+        let extent = points.extent;
+        let meter = Meter::new(&extent, kernel)?;
+        let [unfiltered, spatial, spatio_temporal] = Ratios::over(
+            integrands,
+            || meter.transform.scratch(),
+            |scratch, pair, ratios| {
+                // Two real images ride in one complex transform.
+                scratch.data.fill(Complex64::default());
+                for (site, error) in scratch.data.iter_mut().zip(points.errors(&pair[0])) {
+                    site.re = error;
                 }
-            }
-            meter.transform.forward(scratch);
-            let errors = meter.mean_squares(&scratch.data);
-            for ((ratio, integrand), error) in ratios.iter_mut().zip(pair).zip(errors) {
-                let white = integrand.variance() / extent.spp as f64;
-                *ratio = std::array::from_fn(|k| error[k] / (white * meter.white[k]));
-            }
-        },
-    );
-    Ok(FilteredError { unfiltered, spatial, spatio_temporal })
+                if let Some(second) = pair.get(1) {
+                    for (site, error) in scratch.data.iter_mut().zip(points.errors(second)) {
+                        site.im = error;
+                    }
+                }
+                meter.transform.forward(scratch);
+                let errors = meter.mean_squares(&scratch.data);
+                for ((ratio, integrand), error) in ratios.iter_mut().zip(pair).zip(errors) {
+                    let white = integrand.variance() / extent.spp as f64;
+                    *ratio = std::array::from_fn(|k| error[k] / (white * meter.white[k]));
+                }
+            },
+        );
+        Ok(Self { unfiltered, spatial, spatio_temporal })
+    }
 }
 
 /// Mean squares of an image before and after filtering, from its Fourier transform.
 ///
-/// By Parseval the mean over sites of the squared filtered image is `Σ_k |E(k)|² |W(k)|² / N²`, so that nothing
-/// is transformed back. (A kernel tap shifts the other way than in a convolution; `|W|` is the same.)
+/// By Parseval the mean over sites of the squared filtered image is `Σ_k |E(k)|² |W(k)|² / N²`, so that
+/// nothing is transformed back. (A kernel tap shifts the other way than in a convolution; `|W|` is the same.)
 struct Meter {
     transform: Transform,
     mirrors: Vec<u32>,
@@ -83,7 +100,7 @@ struct Meter {
 }
 
 impl Meter {
-    fn new(extent: &Extent, kernel: &Kernel) -> Result<Self, ConfigError> {
+    fn new(extent: &Extent, kernel: &Kernel) -> Result<Self, MeasureError> {
         let transform = Transform::new(extent.frames, extent.height, extent.width);
         let spatial = Kernel { temporal: TemporalKernel::None, ..kernel.clone() };
         let mut power = vec![[1.0; 3]; transform.len()];
@@ -111,9 +128,9 @@ impl Meter {
     fn mean_squares(&self, image: &[Complex64]) -> [[f64; 3]; 2] {
         let mut sums = [[0.0; 3]; 2];
         for ((&value, &mirror), power) in image.iter().zip(&self.mirrors).zip(&self.power) {
-            // The parts' transforms are A = (Z(k) + Z(−k)*) / 2 and B = (Z(k) − Z(−k)*) / 2i. Over the pair of
-            // k and −k, on which the power of a real kernel is equal, |A|² sums to |Z|² + Re Z(k) Z(−k), twice
-            // over, and |B|² to the difference.
+            // The parts' transforms are A = (Z(k) + Z(−k)*) / 2 and B = (Z(k) − Z(−k)*) / 2i. Over the pair
+            // of k and −k, on which the power of a real kernel is equal, |A|² sums to |Z|² + Re Z(k) Z(−k),
+            // twice over, and |B|² to the difference.
             let (square, cross) = (value.norm_sqr(), (value * image[mirror as usize]).re);
             for stage in 0..3 {
                 sums[0][stage] += power[stage] * (square + cross);

@@ -1,41 +1,131 @@
-//! One test integrand on the unit cube, whose mean and variance are known in closed form.
+//! One test integrand on the unit cube, with its mean and variance.
 
-use std::f64::consts::PI;
+use std::fmt;
+use std::sync::Arc;
 
-use super::volume;
+use super::error::MeasureError;
+use super::integrand_kind::IntegrandKind;
 
 /// A function on `[0, 1)^D` whose mean and variance under the uniform distribution are known.
 ///
-/// [`super::Integrands::random`] draws them. Mean and variance are evaluated once, on construction.
+/// [`super::Integrands::random`] draws some with closed forms. [`Integrand::new`] takes a function of your
+/// own, [`Integrand::estimated`] one of which nothing is known; [`super::Integrands::own`] makes families of
+/// them.
+///
+/// ```
+/// use fsot::metrics::Integrand;
+///
+/// // A light that a quarter circle of the square sees.
+/// let share = std::f64::consts::FRAC_PI_4;
+/// let light = |x: &[f64]| if x[0] * x[0] + x[1] * x[1] < 1.0 { 1.0 } else { 0.0 };
+/// let quarter = Integrand::new(2, light, share, share * (1.0 - share))?;
+/// assert_eq!(quarter.value(&[0.5, 0.5]), 1.0);
+/// assert!((Integrand::estimated(2, light, 4096)?.integral() - share).abs() < 1e-2);
+/// # Ok::<(), fsot::metrics::MeasureError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Integrand {
-    shape: Shape,
+    function: Function,
     dims: usize,
     integral: f64,
     variance: f64,
 }
 
-/// The functions. Coordinates that a shape doesn't name are free.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Shape {
-    /// 1 where `normal · x < offset`.
-    HalfSpace { normal: Vec<f64>, offset: f64 },
-    /// `gradient · x`.
-    Linear { gradient: Vec<f64> },
-    /// `cos(2π (wave · x + phase))`; the wave vector in cycles per unit length.
-    Cosine { wave: Vec<f64>, phase: f64 },
-    /// `exp(-|x_axes - centre|² / (2 deviation²))`.
-    Bump { axes: Vec<usize>, centre: Vec<f64>, deviation: f64 },
-    /// 1 where `|x_axes - centre| < radius`. With three axes or more it must lie inside the cube.
-    Ball { axes: Vec<usize>, centre: Vec<f64>, radius: f64 },
-    /// 1 where `lower ≤ x_axes < upper`, componentwise; `0 ≤ lower ≤ upper ≤ 1`.
-    Box { axes: Vec<usize>, lower: Vec<f64>, upper: Vec<f64> },
+/// Of ours, or a caller's.
+#[derive(Clone)]
+enum Function {
+    Known(IntegrandKind),
+    Own(Arc<OwnFunction>),
+}
+
+type OwnFunction = dyn Fn(&[f64]) -> f64 + Send + Sync;
+
+impl fmt::Debug for Function {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Known(kind) => kind.fmt(out),
+            Self::Own(_) => out.write_str("Own(..)"),
+        }
+    }
+}
+
+/// Functions of a caller are equal if they are one and the same.
+impl PartialEq for Function {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Known(kind), Self::Known(other)) => kind == other,
+            (Self::Own(function), Self::Own(other)) => Arc::ptr_eq(function, other),
+            _ => false,
+        }
+    }
 }
 
 impl Integrand {
-    pub(super) fn new(shape: Shape, dims: usize) -> Self {
-        let (integral, variance) = shape.moments();
-        Self { shape, dims, integral, variance }
+    /// A function of `dims` coordinates, with its mean and its variance over the unit cube.
+    ///
+    /// `value` is called from several threads, with points of exactly `dims` coordinates in `[0, 1)`; it must
+    /// depend on nothing else. An integral that is off by `δ` adds `n δ² / variance` to ratios over `n`
+    /// samples.
+    ///
+    /// # Errors
+    /// No dimensions; an integral that is not finite; a variance that is not positive and finite.
+    pub fn new(
+        dims: usize,
+        value: impl Fn(&[f64]) -> f64 + Send + Sync + 'static,
+        integral: f64,
+        variance: f64,
+    ) -> Result<Self, MeasureError> {
+        if dims == 0 {
+            return Err(MeasureError::Nothing { what: "dimensions" });
+        }
+        if !integral.is_finite() {
+            let (name, expected) = ("the integral of an integrand", "that is finite");
+            return Err(MeasureError::OutOfRange { name, value: integral, expected });
+        }
+        if !(variance > 0.0 && variance.is_finite()) {
+            let (name, expected) = ("the variance of an integrand", "above 0 that is finite");
+            return Err(MeasureError::OutOfRange { name, value: variance, expected });
+        }
+        Ok(Self { function: Function::Own(Arc::new(value)), dims, integral, variance })
+    }
+
+    /// A function of `dims` coordinates whose mean and variance are estimated from `points` points of the
+    /// Halton sequence.
+    ///
+    /// In few dimensions the mean is off by less than the `√(variance / points)` of random points, which would
+    /// add `n / points` to ratios over `n` samples: take many more points than samples. O(points · dims).
+    ///
+    /// # Errors
+    /// No dimensions or points; values that are not finite, or all the same.
+    pub fn estimated(
+        dims: usize,
+        value: impl Fn(&[f64]) -> f64 + Send + Sync + 'static,
+        points: usize,
+    ) -> Result<Self, MeasureError> {
+        for (what, count) in [("dimensions", dims), ("points", points)] {
+            if count == 0 {
+                return Err(MeasureError::Nothing { what });
+            }
+        }
+        let primes = (2..).filter(|number| (2..*number).all(|divisor| number % divisor != 0));
+        let bases: Vec<usize> = primes.take(dims).collect();
+        let mut point = vec![0.0; dims];
+        // From 1 on: the first point would be the origin, where a function may be infinite.
+        let values = (1..=points).map(|index| {
+            for (coordinate, &base) in point.iter_mut().zip(&bases) {
+                *coordinate = radical_inverse(index, base);
+            }
+            value(&point)
+        });
+        let values: Vec<f64> = values.collect();
+        let mean = values.iter().sum::<f64>() / points as f64;
+        let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / points as f64;
+        Self::new(dims, value, mean, variance)
+    }
+
+    pub(super) fn known(kind: IntegrandKind, dims: usize) -> Self {
+        let (integral, variance) = kind.moments();
+        Self { function: Function::Known(kind), dims, integral, variance }
     }
 
     /// Number of coordinates.
@@ -48,7 +138,8 @@ impl Integrand {
         self.integral
     }
 
-    /// Variance of the value at a uniformly distributed point: the expected squared error of one random sample.
+    /// Variance of the value at a uniformly distributed point: the expected squared error of one random
+    /// sample.
     pub fn variance(&self) -> f64 {
         self.variance
     }
@@ -60,140 +151,63 @@ impl Integrand {
     #[inline]
     pub fn value(&self, point: &[f64]) -> f64 {
         let point = &point[..self.dims];
-        let inside = |yes: bool| f64::from(u8::from(yes));
-        match &self.shape {
-            Shape::HalfSpace { normal, offset } => inside(dot(normal, point) < *offset),
-            Shape::Linear { gradient } => dot(gradient, point),
-            Shape::Cosine { wave, phase } => (2.0 * PI * (dot(wave, point) + phase)).cos(),
-            Shape::Bump { axes, centre, deviation } => {
-                (-distance_sq(point, axes, centre) / (2.0 * deviation * deviation)).exp()
-            }
-            Shape::Ball { axes, centre, radius } => {
-                inside(distance_sq(point, axes, centre) < radius * radius)
-            }
-            Shape::Box { axes, lower, upper } => inside(
-                axes.iter().zip(lower.iter().zip(upper)).all(|(&d, (l, u))| (l..u).contains(&&point[d])),
-            ),
+        match &self.function {
+            Function::Known(kind) => kind.value(point),
+            Function::Own(value) => value(point),
         }
     }
 }
 
-impl Shape {
-    /// Mean and variance over the unit cube.
-    fn moments(&self) -> (f64, f64) {
-        let indicator = |volume: f64| (volume, volume * (1.0 - volume));
-        match self {
-            Shape::HalfSpace { normal, offset } => indicator(volume::half_space(normal, *offset)),
-            Shape::Linear { gradient } => {
-                (0.5 * gradient.iter().sum::<f64>(), gradient.iter().map(|g| g * g).sum::<f64>() / 12.0)
-            }
-            Shape::Cosine { wave, phase } => {
-                let mean = mean_cosine(wave, *phase, 1.0);
-                // cos² a = (1 + cos 2a) / 2
-                (mean, 0.5 * (1.0 + mean_cosine(wave, *phase, 2.0)) - mean * mean)
-            }
-            Shape::Bump { centre, deviation, .. } => {
-                let product = |deviation| -> f64 {
-                    centre.iter().map(|&centre| volume::gaussian(centre, deviation)).product()
-                };
-                // The square of a Gaussian is a Gaussian narrower by √2.
-                let (mean, mean_sq) = (product(*deviation), product(deviation * 0.5_f64.sqrt()));
-                (mean, mean_sq - mean * mean)
-            }
-            Shape::Ball { centre, radius, .. } => indicator(match **centre {
-                [x] => ((x + radius).min(1.0) - (x - radius).max(0.0)).max(0.0),
-                [x, y] => volume::disc_in_square([x, y], *radius),
-                _ => volume::ball(centre.len(), *radius),
-            }),
-            Shape::Box { lower, upper, .. } => {
-                indicator(lower.iter().zip(upper).map(|(lower, upper)| upper - lower).product())
-            }
-        }
+/// The digits of `index` in a base, mirrored at the point.
+fn radical_inverse(index: usize, base: usize) -> f64 {
+    let (mut inverse, mut place, mut rest) = (0.0, 1.0, index);
+    while rest > 0 {
+        place /= base as f64;
+        inverse += place * (rest % base) as f64;
+        rest /= base;
     }
-}
-
-/// Mean over the cube of `cos(2π · multiple · (wave · x + phase))`: a product of sincs, turned to its mid-phase.
-fn mean_cosine(wave: &[f64], phase: f64, multiple: f64) -> f64 {
-    let sinc = |t: f64| if t.abs() < 1e-8 { 1.0 } else { (PI * t).sin() / (PI * t) };
-    let amplitude: f64 = wave.iter().map(|k| sinc(multiple * k)).product();
-    amplitude * (2.0 * PI * multiple * (phase + 0.5 * wave.iter().sum::<f64>())).cos()
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// Squared distance from `centre` in the subspace of `axes`.
-fn distance_sq(point: &[f64], axes: &[usize], centre: &[f64]) -> f64 {
-    axes.iter().zip(centre).map(|(&d, c)| (point[d] - c) * (point[d] - c)).sum()
+    inverse
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metrics::{Family, Integrands};
-    use crate::random;
 
-    /// 50 integrands of every family against 2^15 random points: the estimate of the mean is within 5 standard
-    /// errors, that of the variance within 5 of its own (from the sample's fourth moment). Under the normal law
-    /// one of the 1600 checks fails with probability 1e-3; the seed is fixed.
     #[test]
-    fn closed_forms_agree_with_monte_carlo() {
-        const POINTS: usize = 1 << 15;
-        for dims in [1, 2, 3, 5] {
-            let points: Vec<f64> = random::uniforms(9, POINTS * dims).into_iter().map(f64::from).collect();
-            let set = Integrands::random(dims, 50, 4).unwrap();
-            for integrand in Family::ALL.iter().flat_map(|&family| set.family(family)) {
-                let mean_of = |f: &dyn Fn(f64) -> f64| {
-                    points.chunks_exact(dims).map(|x| f(integrand.value(x))).sum::<f64>() / POINTS as f64
-                };
-                let (integral, variance) = (integrand.integral(), integrand.variance());
-                let error = mean_of(&|v| v) - integral;
-                let allowed = 5.0 * (variance / POINTS as f64).sqrt();
-                assert!(error.abs() < allowed, "mean of {integrand:?} is off by {error}");
-                let spread = mean_of(&|v| (v - integral).powi(2));
-                let fourth = mean_of(&|v| (v - integral).powi(4));
-                let error = spread - variance;
-                // The last term is for indicators of one half, whose squared deviation does not vary at all.
-                let allowed = 5.0 * ((fourth - spread * spread).max(0.0) / POINTS as f64).sqrt() + 2e-4;
-                assert!(error.abs() < allowed, "variance of {integrand:?} is off by {error}");
-            }
+    fn moments_of_ones_own_are_checked() {
+        let make = |dims, integral, variance| Integrand::new(dims, |x| x[0], integral, variance);
+        let moment = |error| match error {
+            Err(MeasureError::OutOfRange { name, value, .. }) => (name, value),
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(make(0, 0.5, 1.0), Err(MeasureError::Nothing { what: "dimensions" }));
+        assert_eq!(moment(make(1, f64::INFINITY, 1.0)).0, "the integral of an integrand");
+        for variance in [0.0, -1.0, f64::INFINITY] {
+            assert_eq!(moment(make(1, 0.5, variance)), ("the variance of an integrand", variance));
         }
+        assert!(make(1, 0.5, f64::NAN).is_err());
+        let error = make(1, 0.5, 0.0).unwrap_err().to_string();
+        assert_eq!(error, "the variance of an integrand is 0: give a value above 0 that is finite");
     }
 
     #[test]
-    fn smooth_moments_agree_with_quadrature() {
-        let shapes = [
-            Shape::Linear { gradient: vec![0.6, -0.8] },
-            Shape::Cosine { wave: vec![1.7, -0.4], phase: 0.3 },
-            Shape::Cosine { wave: vec![0.0, 1.0], phase: 0.1 },
-            Shape::Bump { axes: vec![1, 0], centre: vec![0.1, 0.7], deviation: 0.2 },
-        ];
-        for shape in shapes {
-            let integrand = Integrand::new(shape, 2);
-            let (mut sum, mut sum_sq) = (0.0, 0.0);
-            const STEPS: usize = 1000;
-            for cell in 0..STEPS * STEPS {
-                let at = |i: usize| (i as f64 + 0.5) / STEPS as f64;
-                let value = integrand.value(&[at(cell / STEPS), at(cell % STEPS)]);
-                sum += value;
-                sum_sq += value * value;
-            }
-            let cells = (STEPS * STEPS) as f64;
-            let mean = sum / cells;
-            // Midpoint rule: h² / 24 times the integral of the Laplacian, at most 4 (2π · 1.75)² here.
-            assert!((mean - integrand.integral()).abs() < 2.1e-5, "{integrand:?}: {mean}");
-            let variance = sum_sq / cells - mean * mean;
-            assert!((variance - integrand.variance()).abs() < 4e-5, "{integrand:?}: {variance}");
-        }
+    fn estimates_approach_the_closed_forms() {
+        let product = |x: &[f64]| x[0] * x[1] * x[2];
+        let estimated = Integrand::estimated(3, product, 1 << 16).unwrap();
+        assert!((estimated.integral() - 0.125).abs() < 1e-4, "{estimated:?}");
+        // 1/27 − 1/64
+        assert!((estimated.variance() - 37.0 / 1728.0).abs() < 1e-4, "{estimated:?}");
+        assert!(Integrand::estimated(1, |_| 3.0, 64).is_err());
+        assert!(Integrand::estimated(1, |_| f64::NAN, 64).is_err());
+        assert!(Integrand::estimated(1, |x| x[0], 0).is_err());
     }
 
     #[test]
-    fn indicators_are_half_open_where_the_cube_is() {
-        let halves = Shape::Box { axes: vec![0], lower: vec![0.0], upper: vec![0.5] };
-        let integrand = Integrand::new(halves, 2);
-        assert_eq!(integrand.value(&[0.0, 0.9]), 1.0);
-        assert_eq!(integrand.value(&[0.5, 0.9]), 0.0);
-        assert_eq!((integrand.integral(), integrand.variance()), (0.5, 0.25));
+    fn ones_own_are_equal_if_the_same() {
+        let make = || Integrand::new(1, |x| x[0], 0.5, 1.0 / 12.0).unwrap();
+        let one = make();
+        assert_eq!(one, one.clone());
+        assert_ne!(one, Integrand::known(IntegrandKind::Linear { gradient: vec![1.0] }, 1));
+        assert!(format!("{one:?}").contains("Own(..)"));
     }
 }

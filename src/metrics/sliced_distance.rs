@@ -2,78 +2,98 @@
 
 use rayon::prelude::*;
 
-use crate::error::ConfigError;
+use super::coordinates::Coordinates;
+use super::error::MeasureError;
+use super::samples::Samples;
+use crate::directions::frames::spread;
 use crate::laws::distance::Workspace;
 use crate::targets::Target;
 
-/// The sliced 2-Wasserstein distance between equally weighted points and a target: the root of the mean, over
-/// `directions` directions, of the squared 2-Wasserstein distance of the projections.
+/// Sliced Wasserstein distance between equally weighted points and a target.
 ///
-/// `points` holds `dims` coordinates per point. Directions divide the half circle evenly in the plane and are those of a
-/// fixed random sequence in more dimensions; distances are exact, and in the units in which the target measures
-/// ([`Target::scales`]). O(directions · n log n), in parallel.
+/// Directions divide the half circle evenly in the plane and are those of a fixed random sequence in more
+/// dimensions; distances are exact, and in the units in which the target measures ([`Target::scales`]). All
+/// samples of a table count as one set.
 ///
-/// # Errors
-/// No points or directions, no dimensions or not those of the target, coordinates that are not finite, a target without a
-/// finite law along some direction.
-pub fn sliced_w2(
-    points: &[f64],
-    dims: usize,
-    target: &Target,
-    directions: usize,
-) -> Result<f64, ConfigError> {
-    for (axis, len) in [("dims", dims), ("points", points.len()), ("directions", directions)] {
-        if len == 0 {
-            return Err(ConfigError::EmptyAxis { axis });
+/// ```
+/// use fsot::metrics::{Samples, SlicedDistance};
+/// use fsot::targets::Target;
+///
+/// let centre = Samples::points(&[0.5, 0.5], 2)?;
+/// let distance = SlicedDistance::measure(centre, &[0, 1], &Target::UniformCube, 16)?;
+/// // The deviation of the cube along any direction.
+/// assert!((distance.w2 - 12.0_f64.sqrt().recip()).abs() < 1e-12);
+/// # Ok::<(), fsot::metrics::MeasureError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlicedDistance {
+    /// Root of the mean over directions of the squared 2-Wasserstein distance of the projections.
+    pub w2: f64,
+}
+
+impl SlicedDistance {
+    /// Measures the dimension group `dims` of samples along at least one direction.
+    ///
+    /// O(directions · n log n), in parallel; the same bits at any thread count.
+    ///
+    /// # Errors
+    /// A dimension group that is empty, repeats a dimension, exceeds those of the samples, or has another
+    /// length than the target has dimensions; no directions; a target without a finite law along some
+    /// direction.
+    pub fn measure<'a>(
+        samples: impl Into<Samples<'a>>,
+        dims: &[usize],
+        target: &Target,
+        directions: usize,
+    ) -> Result<Self, MeasureError> {
+        let points =
+            Coordinates::gather(samples, dims)?.fitting("the target", target.dims().unwrap_or(dims.len()))?;
+        if directions == 0 {
+            return Err(MeasureError::Nothing { what: "directions" });
         }
+        let scales = target.scales(dims.len());
+        let squared = (0..directions).into_par_iter().map(|index| {
+            let direction = spread(dims.len(), index, directions);
+            let direction: Vec<f64> =
+                direction.iter().zip(&scales).map(|(component, scale)| component * scale).collect();
+            let along = |point: &[f64]| point.iter().zip(&direction).map(|(x, theta)| x * theta).sum();
+            let projections: Vec<f64> = points.points().map(along).collect();
+            let law = target.project(&direction);
+            if !law.is_sound() {
+                return Err(MeasureError::BadLaw { direction });
+            }
+            let displacements = &mut vec![0.0; projections.len()];
+            Ok(Workspace::default().displacements(&law, &projections, None, displacements))
+        });
+        // Collected first: the order of the sum must not depend on the threads.
+        let squared: Vec<f64> = squared.collect::<Result<_, _>>()?;
+        Ok(Self { w2: (squared.iter().sum::<f64>() / directions as f64).sqrt() })
     }
-    if let Some(of) = target.dims()
-        && of != dims
-    {
-        return Err(ConfigError::TargetDims { term: 0, target: of, dims });
-    }
-    if !points.len().is_multiple_of(dims) {
-        let expected = points.len().next_multiple_of(dims);
-        return Err(ConfigError::ValueCount { what: "the list of points", given: points.len(), expected });
-    }
-    if let Some(index) = points.iter().position(|value| !value.is_finite()) {
-        return Err(ConfigError::BadPoint { index, value: points[index] });
-    }
-    let squared = (0..directions).into_par_iter().map(|index| {
-        let direction = crate::directions::frames::spread(dims, index, directions);
-        let direction: Vec<f64> =
-            direction.iter().zip(target.scales(dims)).map(|(component, scale)| component * scale).collect();
-        let along = |point: &[f64]| point.iter().zip(&direction).map(|(x, theta)| x * theta).sum();
-        let projections: Vec<f64> = points.chunks_exact(dims).map(along).collect();
-        let law = target.project(&direction);
-        if !law.is_sound() {
-            return Err(ConfigError::BadLaw { term: 0, direction });
-        }
-        Ok(Workspace::default().displacements(&law, &projections, None, &mut vec![0.0; projections.len()]))
-    });
-    // Collected first: the order of the sum must not depend on the threads.
-    let squared: Vec<f64> = squared.collect::<Result<_, _>>()?;
-    Ok((squared.iter().sum::<f64>() / directions as f64).sqrt())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// One point at the middle of the square: W2² along theta is the variance 1/12 of the law, whatever theta.
+    /// One point at the middle of the square: W2² along theta is the variance 1/12 of the law, whatever
+    /// theta.
     #[test]
     fn a_single_point_is_as_far_as_the_target_is_wide() {
-        let distance = sliced_w2(&[0.5, 0.5], 2, &Target::UniformCube, 16).unwrap();
-        assert!((distance - (1.0_f64 / 12.0).sqrt()).abs() < 1e-12);
+        let point = Samples::points(&[0.5, 0.5], 2).unwrap();
+        let distance = SlicedDistance::measure(point, &[0, 1], &Target::UniformCube, 16).unwrap();
+        assert!((distance.w2 - (1.0_f64 / 12.0).sqrt()).abs() < 1e-12);
     }
 
     #[test]
     fn what_cannot_be_measured_is_refused() {
-        let measure =
-            |points: &[f64], dims, directions| sliced_w2(points, dims, &Target::UniformCube, directions);
-        assert_eq!(measure(&[], 2, 4), Err(ConfigError::EmptyAxis { axis: "points" }));
-        assert_eq!(measure(&[0.5], 1, 0), Err(ConfigError::EmptyAxis { axis: "directions" }));
-        assert!(matches!(measure(&[0.5; 3], 2, 4), Err(ConfigError::ValueCount { expected: 4, .. })));
-        assert!(matches!(measure(&[0.5, f64::NAN], 2, 4), Err(ConfigError::BadPoint { index: 1, .. })));
+        let density = crate::targets::Density::new(1, 1, vec![1.0]).unwrap();
+        let point = Samples::points(&[0.5; 3], 3).unwrap();
+        let measure = |dims: &[usize], target, directions| {
+            SlicedDistance::measure(point, dims, target, directions).unwrap_err()
+        };
+        let error = measure(&[0], &Target::UniformCube, 0);
+        assert_eq!(error, MeasureError::Nothing { what: "directions" });
+        let error = measure(&[0, 1, 2], &Target::Density(density.into()), 4);
+        assert_eq!(error, MeasureError::GroupSize { what: "the target", given: 3, expected: 2 });
     }
 }

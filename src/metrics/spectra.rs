@@ -4,11 +4,11 @@ use ndarray::{Array2, ArrayView3};
 use rayon::prelude::*;
 use rustfft::num_complex::Complex64;
 
-use super::error_image::Points;
+use super::coordinates::Coordinates;
+use super::error::MeasureError;
 use super::fft::{Scratch, Transform};
 use super::integrands::Integrands;
-use crate::error::ConfigError;
-use crate::table::SampleTable;
+use super::samples::Samples;
 
 /// Power spectra of an error image, normalised so that white noise is 1 at every frequency.
 ///
@@ -16,8 +16,19 @@ use crate::table::SampleTable;
 /// (integer division), zero frequency in the middle. Frequencies are in cycles per picture; cycles per pixel
 /// (or frame) are `k / len`, up to 0.5.
 ///
-/// The zero frequency is kept in the arrays: the mean of the error is not subtracted, so the central value of `xy`
-/// is the bias of a frame as ratio to random. Radial average and low-frequency share leave it out.
+/// The zero frequency is kept in the arrays: the mean of the error is not subtracted, so the central value of
+/// `xy` is the bias of a frame as ratio to random. Radial average and low-frequency share leave it out.
+///
+/// ```
+/// use fsot::metrics::{Integrands, Spectra};
+/// use fsot::{Extent, SampleTable};
+///
+/// let extent = Extent { frames: 1, height: 16, width: 16, spp: 1 };
+/// let table = SampleTable::white_noise(extent, 2, 0)?;
+/// let spectra = Spectra::measure(&table, &[0, 1], &Integrands::random(2, 16, 0)?)?;
+/// assert!((0.5..1.5).contains(&spectra.low_frequency_share(0.25)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectra {
     /// Power over `[ky, kx]` (height × width), averaged over frames.
@@ -27,6 +38,18 @@ pub struct Spectra {
 }
 
 /// A ring of frequencies of the xy spectrum.
+///
+/// ```
+/// use fsot::metrics::Spectra;
+///
+/// // A checkerboard has a single frequency, half a cycle per pixel along both axes.
+/// let sign = |(_, y, x): (usize, usize, usize)| if (x + y) % 2 == 0 { 0.5 } else { -0.5 };
+/// let checkerboard = ndarray::Array3::from_shape_fn((1, 8, 8), sign);
+/// let rings = Spectra::of_image(checkerboard.view(), 0.25).radial();
+/// let last = rings.last().unwrap();
+/// assert_eq!((last.frequency, last.count), (0.5_f64.sqrt(), 1));
+/// assert!(last.power > 63.9);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RadialBin {
     /// Mean radius of the ring's frequencies, in cycles per pixel.
@@ -41,8 +64,8 @@ pub struct RadialBin {
 const PARTS: usize = 8;
 
 impl Spectra {
-    /// Spectra of one error image `[frame, y, x]` (of a renderer, say) whose pixels have this variance in white
-    /// noise; pass the image's own mean square to look at the shape alone.
+    /// Spectra of one error image `[frame, y, x]` (of a renderer, say) whose pixels have this variance in
+    /// white noise; pass the image's own mean square to look at the shape alone.
     ///
     /// O(sites log sites).
     ///
@@ -58,19 +81,20 @@ impl Spectra {
         sums.finish(1)
     }
 
-    /// Spectra of a table's error in the dimension group `dims`, averaged over all integrands, each relative to
-    /// its own white noise.
+    /// Spectra of the samples' error in the dimension group `dims`, averaged over all integrands, each
+    /// relative to its own white noise.
     ///
     /// O(sites log sites) per integrand; parallel, and independent of the number of threads.
     ///
     /// # Errors
-    /// A bad dimension group (as in [`super::error_image()`]).
-    pub fn of_table(
-        table: &SampleTable,
+    /// A dimension group that is empty, repeats a dimension, exceeds those of the samples, or has another
+    /// length than integrands have coordinates.
+    pub fn measure<'a>(
+        samples: impl Into<Samples<'a>>,
         dims: &[usize],
         integrands: &Integrands,
-    ) -> Result<Self, ConfigError> {
-        let points = Points::new(table, dims, integrands.dims())?;
+    ) -> Result<Self, MeasureError> {
+        let points = Coordinates::gather(samples, dims)?.fitting("an integrand", integrands.dims())?;
         let extent = points.extent;
         let shape = [extent.frames, extent.height, extent.width];
         let all: Vec<_> = integrands.iter().collect();
@@ -118,10 +142,11 @@ impl Spectra {
         bins.into_iter().filter(|bin| bin.count > 0).map(mean).collect()
     }
 
-    /// Error energy of `xy` at radii above 0 up to `cutoff` cycles per pixel, relative to white noise there: 1
-    /// for white noise, near 0 for blue noise. NaN if no frequency is that low.
+    /// Error energy of `xy` at radii above 0 up to `cutoff` cycles per pixel, relative to white noise there:
+    /// 1 for white noise, near 0 for blue noise. NaN if no frequency is that low.
     ///
-    /// The spatial Gaussian with `sigma_px = 2.1` halves the power at 0.09 cycles per pixel; 0.1 is a good cutoff.
+    /// The spatial Gaussian with `sigma_px = 2.1` halves the power at 0.09 cycles per pixel; 0.1 is a good
+    /// cutoff.
     pub fn low_frequency_share(&self, cutoff: f64) -> f64 {
         let low = self.frequencies().filter(|&(radius, _)| radius <= cutoff);
         let (sum, count) = low.fold((0.0, 0.0), |(sum, count), (_, power)| (sum + power, count + 1.0));

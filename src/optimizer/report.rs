@@ -15,7 +15,7 @@ pub struct StepReport {
     pub slices: u64,
     /// Root mean square distance along the slices between the samples and their targets, before the step; during sweeps
     /// the root mean square of the pull on a coordinate. A noisy sign of progress; the objective itself is measured
-    /// by [`crate::metrics::bound()`].
+    /// by [`crate::metrics::Bound`].
     pub displacement: f64,
     /// Step size.
     pub rate: f64,

@@ -80,8 +80,8 @@ fn the_standard_error_falls_with_the_root() {
     let domains = [Domain::Interval; 2];
     let objective = Objective::new(config.extent, 2, &domains, &terms, &Slicing::default()).unwrap();
     let table = SampleTable::white_noise(config.extent, 2, 3).unwrap();
-    let few = metrics::bound(&objective, &table, 1, 2048).unwrap().total;
-    let many = metrics::bound(&objective, &table, 2, 16 * 2048).unwrap().total;
+    let few = metrics::Bound::measure(&table, &objective, 1, 2048).unwrap().total;
+    let many = metrics::Bound::measure(&table, &objective, 2, 16 * 2048).unwrap().total;
     let fall = few.standard_error / many.standard_error;
     assert!((2.8..5.6).contains(&fall), "{fall}");
     // And the two agree within 4 of them.
@@ -102,7 +102,7 @@ fn the_bound_is_exact_on_the_line() {
     };
     let objective = Objective::new(extent, 1, &[Domain::Interval], &[term], &Slicing::default()).unwrap();
     let table = SampleTable::new(extent, 1, vec![0.6, 0.1]).unwrap();
-    let bound = metrics::bound(&objective, &table, 1, 256).unwrap();
+    let bound = metrics::Bound::measure(&table, &objective, 1, 256).unwrap();
     // ∫ |u − 0.1| over [0, 1/2] and ∫ |u − 0.6| over [1/2, 1], the same along −1.
     let expected = (0.01 + 0.16) / 2.0 + (0.01 + 0.16) / 2.0;
     // The table holds 0.1 and 0.6 as f32.
@@ -124,7 +124,7 @@ fn the_weighted_form_is_tighter() {
         *of_term = form;
         let domains = [Domain::Interval; 2];
         let objective = Objective::new(config.extent, 2, &domains, &terms, &Slicing::default()).unwrap();
-        metrics::bound(&objective, &table, 5, 4096).unwrap().total
+        metrics::Bound::measure(&table, &objective, 5, 4096).unwrap().total
     };
     let (weighted, level_sets) = (value(FilterForm::Weighted), value(FilterForm::LevelSets));
     let error = weighted.standard_error.hypot(level_sets.standard_error);

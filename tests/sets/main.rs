@@ -10,6 +10,8 @@ mod refusals;
 
 use std::ops::ControlFlow;
 
+use fsot::metrics::{Samples, SlicedDistance};
+use fsot::targets::Target;
 use fsot::{Config, Optimizer, Until};
 
 /// Coordinates after so many slices per class.
@@ -19,4 +21,11 @@ fn optimised(config: Config, slices: u64) -> Vec<f64> {
     let values = optimizer.into_table().into_values();
     assert!(values.iter().all(|value| (0.0..1.0).contains(value)));
     values.into_iter().map(f64::from).collect()
+}
+
+/// Sliced distance of points of `dims` coordinates from a target.
+fn distance(points: &[f64], dims: usize, target: &Target, directions: usize) -> f64 {
+    let group: Vec<usize> = (0..dims).collect();
+    let points = Samples::points(points, dims).unwrap();
+    SlicedDistance::measure(points, &group, target, directions).unwrap().w2
 }

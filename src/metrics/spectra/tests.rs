@@ -1,5 +1,6 @@
 use super::*;
-use crate::metrics::{Estimate, Family, error_image};
+use crate::metrics::{ErrorImage, Estimate};
+use crate::table::SampleTable;
 use crate::table::extent::Extent;
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use ndarray::Array3;
@@ -48,7 +49,7 @@ fn white_noise_is_flat() {
     let spectra: Vec<Spectra> = (0..64)
         .map(|seed| {
             let table = SampleTable::white_noise(extent, 2, seed).unwrap();
-            Spectra::of_table(&table, &[1, 0], &integrands).unwrap()
+            Spectra::measure(&table, &[1, 0], &integrands).unwrap()
         })
         .collect();
     let check = |pick: &dyn Fn(&Spectra) -> f64| {
@@ -73,11 +74,11 @@ fn a_table_is_the_mean_of_its_images() {
     let extent = Extent { frames: 2, height: 3, width: 4, spp: 2 };
     let table = SampleTable::white_noise(extent, 3, 7).unwrap();
     let integrands = Integrands::random(2, 3, 1).unwrap();
-    let spectra = Spectra::of_table(&table, &[2, 1], &integrands).unwrap();
+    let spectra = Spectra::measure(&table, &[2, 1], &integrands).unwrap();
     let (mut xy, mut xt) = (Array2::zeros((3, 4)), Array2::zeros((2, 4)));
-    for integrand in Family::ALL.iter().flat_map(|&family| integrands.family(family)) {
-        let errors = error_image(&table, &[2, 1], integrand).unwrap();
-        let one = Spectra::of_image(errors.view(), integrand.variance() / 2.0);
+    for integrand in integrands.iter() {
+        let image = ErrorImage::measure(&table, &[2, 1], integrand).unwrap();
+        let one = Spectra::of_image(image.errors.view(), image.white_variance);
         xy += &(one.xy / 12.0);
         xt += &(one.xt / 12.0);
     }
@@ -86,7 +87,7 @@ fn a_table_is_the_mean_of_its_images() {
     }
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| Spectra::of_table(&table, &[2, 1], &integrands).unwrap())
+        pool.install(|| Spectra::measure(&table, &[2, 1], &integrands).unwrap())
     };
     assert_eq!(on(1), on(2));
 }
