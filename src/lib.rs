@@ -5,20 +5,18 @@
 //! al. 2022[^salaun] and its spatio-temporal extension by Korać et al. 2023[^korac], written from the mathematics.
 //!
 //! ```
-//! use std::ops::ControlFlow;
-//!
 //! use fsot::{Config, Extent, Optimizer, Site, Until, metrics};
 //!
 //! let extent = Extent { frames: 1, height: 32, width: 32, spp: 1 };
 //! let mut optimizer = Optimizer::new(Config::new(extent, 2))?;
 //! optimizer.run(Until::Seconds(0.05))?;
-//! let bound = metrics::bound(optimizer.objective(), &optimizer.table(), 0, 4096)?;
+//! let bound = metrics::Bound::measure(&optimizer.table(), optimizer.objective(), 0, 4096)?;
 //! assert!(bound.total.ratio_to_white_noise < 0.75);
 //!
 //! let table = optimizer.into_table();
 //! let random_numbers = table.sample(Site { frame: 0, y: 5, x: 7 }, 0);
 //! assert!(random_numbers.iter().all(|number| (0.0..1.0).contains(number)));
-//! # Ok::<(), fsot::ConfigError>(())
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! `table.save("table.npy")` writes it for everybody else. You can stop here; the rest is what happens inside.
@@ -30,18 +28,18 @@
 //! dense as a picture; [`Classes`] and [`Target`] hold the rest, and [`ClassFamily`] and [`Measure`] whatever is yours.
 //!
 //! ```
-//! use std::ops::ControlFlow;
-//!
 //! use fsot::config::LabelSubsets;
+//! use fsot::metrics::{Samples, SlicedDistance};
 //! use fsot::targets::Target;
-//! use fsot::{Config, Optimizer, Until, metrics};
+//! use fsot::{Config, Optimizer, Until};
 //!
 //! let mut optimizer = Optimizer::new(Config::classes(&[64, 64], 2, &LabelSubsets::EachAndAll))?;
 //! optimizer.run(Until::SlicesPerClass(1000))?;
-//! let points: Vec<f64> = optimizer.into_table().values().iter().map(|&value| value.into()).collect();
-//! let of_the_first_label = metrics::sliced_w2(&points[..2 * 64], 2, &Target::UniformCube, 64)?;
-//! assert!(of_the_first_label < 0.02);
-//! # Ok::<(), fsot::ConfigError>(())
+//! let table = optimizer.into_table();
+//! let first_label = Samples::from(&table).select(..64)?;
+//! let distance = SlicedDistance::measure(first_label, &[0, 1], &Target::UniformCube, 64)?;
+//! assert!(distance.w2 < 0.02);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! # What it promises
@@ -53,14 +51,15 @@
 //! * Steps allocate nothing once their buffers have grown; memory stays below nine times the table (ten with SGD, eleven
 //!   with Adam), plus a few MiB per thread. (Sweeps of tiles narrower than 16 pixels take up to 16 times the table instead:
 //!   their rows are filled up.) A target other than the cube is tabulated once, in up to 17 MiB.
-//! * Bad input is refused with a typed error ([`ConfigError`], [`TableError`]) before anything is computed or written.
-//!   The library prints nothing.
+//! * Bad input is refused with a typed error ([`ConfigError`], [`TableError`], [`MeasureError`]) before anything is
+//!   computed or written. The library prints nothing.
 //!
 //! What it is not: a renderer, a denoiser, a GPU library, or a source of random numbers for anything that needs
 //! statistical independence between pixels.
 //!
 //! [`ClassFamily`]: classes::ClassFamily
 //! [`Classes`]: classes::Classes
+//! [`MeasureError`]: metrics::MeasureError
 //! [`Measure`]: targets::Measure
 //! [`TableError`]: files::TableError
 //! [`Target`]: targets::Target

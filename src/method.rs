@@ -11,7 +11,7 @@
 //! ```
 //!
 //! bounds the filtered error of every Lipschitz integrand from above. [`Optimizer`] descends it with a batch of random
-//! slices `(p, z, theta)` per step; [`metrics::bound()`] measures it with exact distances;
+//! slices `(p, z, theta)` per step; [`metrics::Bound`] measures it with exact distances;
 //! [`Objective::value_and_gradient`] hands it to an optimiser of your own.
 //!
 //! # All slices at once
@@ -60,7 +60,7 @@
 //! [`Target`]: crate::targets::Target
 //! [`Term`]: crate::config::Term
 //! [`Until::Seconds`]: crate::Until::Seconds
-//! [`metrics::bound()`]: crate::metrics::bound()
+//! [`metrics::Bound`]: crate::metrics::Bound
 //!
 //! [^salaun]: Salaün, Georgiev, Seidel, Singh 2022, "Scalable multi-class sampling via filtered sliced optimal transport",
 //!     ACM TOG 41(6), <https://doi.org/10.1145/3550454.3555484>.

@@ -92,7 +92,7 @@ fn demanded_pixels_are_as_good_as_in_a_full_run() {
     let demand = disc(extent, vec![vec![0, 1]]);
     let full = run(Optimizer::new(config.clone()).unwrap(), 256).into_table();
     let part = run(Optimizer::for_demand(config, &demand).unwrap(), 256);
-    let bound = |table| metrics::bound(part.objective(), table, 1, 16_384).unwrap().terms[0];
+    let bound = |table| metrics::Bound::measure(table, part.objective(), 1, 16_384).unwrap().terms[0];
     let (of_full, of_part) = (bound(&full), bound(&part.table()));
     assert!(of_part.ratio_to_white_noise < of_full.ratio_to_white_noise, "{of_part:?} {of_full:?}");
     assert!(of_part.ratio_to_white_noise < 0.70, "{of_part:?}");

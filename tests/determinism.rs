@@ -88,7 +88,8 @@ fn threads_do_not_change_a_bit() {
                         ControlFlow::Continue(())
                     })
                     .unwrap();
-                let bound = metrics::bound(optimizer.objective(), &optimizer.table(), 9, 512).unwrap();
+                let bound =
+                    metrics::Bound::measure(&optimizer.table(), optimizer.objective(), 9, 512).unwrap();
                 assert_eq!(report.steps as usize, displacements.len());
                 (bits(&optimizer.table()), displacements, bound)
             })

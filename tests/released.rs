@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use fsot::classes::Classes;
-use fsot::metrics::{Bias, Integrands, bound, filtered_error};
+use fsot::metrics::{Bias, Bound, FilteredError, Integrands};
 use fsot::{Config, Objective, SampleTable};
 
 /// Filtered error, bound and bias, as ratios to white noise.
@@ -40,11 +40,12 @@ fn measure(name: &str) -> Figures {
     let pairs: Vec<[usize; 2]> = (0..config.dims / 2).map(|pair| [2 * pair, 2 * pair + 1]).collect();
     let (mut filtered, mut bias) = (0.0, 0.0);
     for pair in &pairs {
-        filtered += filtered_error(&table, pair, kernel, &integrands).unwrap().spatio_temporal.mean.mean;
+        filtered +=
+            FilteredError::measure(&table, pair, &integrands, kernel).unwrap().spatio_temporal.mean.mean;
         bias += Bias::measure(&table, pair, &integrands).unwrap().table.mean.mean;
     }
     let objective = Objective::new(&config).unwrap();
-    let bound = bound(&objective, &table, 0, 8192).unwrap().total.ratio_to_white_noise;
+    let bound = Bound::measure(&table, &objective, 0, 8192).unwrap().total.ratio_to_white_noise;
     Figures { filtered: filtered / pairs.len() as f64, bound, bias: bias / pairs.len() as f64 }
 }
 

@@ -162,7 +162,7 @@ fn bound(optimizer: &Optimizer) -> Result<BoundRecord, Failure> {
     // Enough slices for a standard error of about half a percent of the ratio.
     const SLICES: usize = 16_384;
     let Config { extent, dims, seed, .. } = *optimizer.config();
-    let measure = |table| metrics::bound(optimizer.objective(), &table, seed, SLICES);
+    let measure = |table| metrics::Bound::measure(&table, optimizer.objective(), seed, SLICES);
     let before = measure(SampleTable::white_noise(extent, dims, seed)?)?.total;
     Ok(BoundRecord { before, after: measure(optimizer.table())?.total })
 }

@@ -1,7 +1,7 @@
 //! What a table is worth, in the three figures that the benches report.
 
-use fsot::metrics::{Bias, Integrands, bound, filtered_error};
-use fsot::{Config, ConfigError, Extent, Kernel, Objective, SampleTable};
+use fsot::metrics::{Bias, Bound, FilteredError, Integrands, MeasureError};
+use fsot::{Config, Extent, Kernel, Objective, SampleTable};
 
 /// Ratios to white noise of the same shape: 1 is random, 0 is perfect.
 #[derive(Clone, Copy, Debug)]
@@ -24,7 +24,7 @@ pub struct Judge {
 
 impl Judge {
     /// Judges two-dimensional tables of this extent by the objective of [`Config::new`].
-    pub fn new(extent: Extent, integrands: usize, slices: usize) -> Result<Self, ConfigError> {
+    pub fn new(extent: Extent, integrands: usize, slices: usize) -> Result<Self, MeasureError> {
         let config = Config::new(extent, 2);
         Ok(Self {
             kernel: config.kernels().remove(0),
@@ -35,13 +35,13 @@ impl Judge {
     }
 
     /// Measures a table of the extent that was announced.
-    pub fn judge(&self, table: &SampleTable) -> Result<Quality, ConfigError> {
+    pub fn judge(&self, table: &SampleTable) -> Result<Quality, MeasureError> {
         Ok(Quality {
-            filtered: filtered_error(table, &[0, 1], &self.kernel, &self.integrands)?
+            filtered: FilteredError::measure(table, &[0, 1], &self.integrands, &self.kernel)?
                 .spatio_temporal
                 .mean
                 .mean,
-            bound: bound(&self.objective, table, 0, self.slices)?.total.ratio_to_white_noise,
+            bound: Bound::measure(table, &self.objective, 0, self.slices)?.total.ratio_to_white_noise,
             bias: Bias::measure(table, &[0, 1], &self.integrands)?.table.mean.mean,
         })
     }

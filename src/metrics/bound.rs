@@ -5,15 +5,26 @@ use rand::seq::SliceRandom;
 use rand_distr::StandardNormal;
 use rayon::prelude::*;
 
-use crate::error::ConfigError;
+use super::error::MeasureError;
+use super::samples::{Samples, Values};
 use crate::files::metadata::BoundEstimate;
 use crate::laws::distance::Workspace;
 use crate::objective::{Objective, Slice};
 use crate::random::{self, Purpose};
-use crate::table::SampleTable;
+use crate::table::extent::Extent;
 use crate::targets::Target;
 
-/// The bound on a table's filtered error, measured on random slices.
+/// The bound on the filtered error of samples, measured on random slices.
+///
+/// ```
+/// use fsot::metrics::Bound;
+/// use fsot::{Config, Extent, Optimizer};
+///
+/// let optimizer = Optimizer::new(Config::new(Extent { frames: 1, height: 16, width: 16, spp: 1 }, 2))?;
+/// let of_white_noise = Bound::measure(&optimizer.table(), optimizer.objective(), 0, 1024)?;
+/// assert!((0.5..1.5).contains(&of_white_noise.total.ratio_to_white_noise));
+/// # Ok::<(), fsot::metrics::MeasureError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bound {
     /// The whole objective: the terms' bounds, averaged with their weights.
@@ -27,36 +38,47 @@ const CLUSTER: usize = 32;
 /// Fewest directions.
 const DIRECTIONS: usize = 8;
 
-/// Estimates the bound of a table by the exact 1-Wasserstein distances of about `slices` random slices per term
-/// (fewer for terms with large subsets, along at least 8 directions).
-///
-/// White noise of the same shape is represented by as many independent points per slice as its subset holds, so that
-/// the ratio's denominator is exact in the mean, whatever the shape. Slices are those of `seed`; the optimiser's own
-/// are others. O(slices · n log n), in parallel, the same bits at any thread count.
-///
-/// # Errors
-/// A table whose shape is not that of the objective; `slices` of 0.
-pub fn bound(
-    objective: &Objective,
-    table: &SampleTable,
-    seed: u64,
-    slices: usize,
-) -> Result<Bound, ConfigError> {
-    if slices == 0 {
-        return Err(crate::error::RangeError::new("slices", 0.0, "of at least 1").into());
+impl Bound {
+    /// Estimates the bound by the exact 1-Wasserstein distances of about `slices` random slices per term, at
+    /// least one (fewer for terms with large subsets, along at least 8 directions).
+    ///
+    /// White noise of the same shape is represented by as many independent points per slice as its subset
+    /// holds, so that the ratio's denominator is exact in the mean, whatever the shape. Slices are those of
+    /// `seed`; the optimiser's own are others. O(slices · n log n), in parallel, the same bits at any thread
+    /// count.
+    ///
+    /// # Errors
+    /// Samples whose shape is not that of the objective; `slices` of 0.
+    pub fn measure<'a>(
+        samples: impl Into<Samples<'a>>,
+        objective: &Objective,
+        seed: u64,
+        slices: usize,
+    ) -> Result<Self, MeasureError> {
+        let samples = samples.into();
+        if slices == 0 {
+            return Err(MeasureError::Nothing { what: "slices" });
+        }
+        let Extent { frames, height, width, spp } = objective.extent();
+        let [given, expected] =
+            [samples.shape(), [frames, height, width, spp, objective.dims()]].map(Box::new);
+        if given != expected {
+            return Err(MeasureError::OtherShape { given, expected });
+        }
+        let terms: Vec<Moments> = (0..objective.terms().count())
+            .map(|term| match samples.values() {
+                Values::F32(points) => Moments::of_term(objective, points, seed, slices, term),
+                Values::F64(points) => Moments::of_term(objective, points, seed, slices, term),
+            })
+            .collect();
+        let weights: Vec<f64> = objective.terms().map(|term| term.weight).collect();
+        let total: f64 = weights.iter().sum();
+        let mut mean = Moments::default();
+        for (moments, weight) in terms.iter().zip(weights) {
+            mean.add(moments, weight / total);
+        }
+        Ok(Self { total: mean.estimate(), terms: terms.iter().map(Moments::estimate).collect() })
     }
-    objective.check_table(table)?;
-    let points = table.values();
-    let terms: Vec<Moments> = (0..objective.terms().count())
-        .map(|term| Moments::of_term(objective, points, seed, slices, term))
-        .collect();
-    let weights: Vec<f64> = objective.terms().map(|term| term.weight).collect();
-    let total: f64 = weights.iter().sum();
-    let mut mean = Moments::default();
-    for (moments, weight) in terms.iter().zip(weights) {
-        mean.add(moments, weight / total);
-    }
-    Ok(Bound { total: mean.estimate(), terms: terms.iter().map(Moments::estimate).collect() })
 }
 
 /// Means over slices of the table's distance and of white noise's, and the covariance of those means.
@@ -70,12 +92,18 @@ struct Moments {
 }
 
 impl Moments {
-    fn of_term(objective: &Objective, points: &[f32], seed: u64, slices: usize, term: usize) -> Self {
+    fn of_term<T: Copy + Into<f64> + Sync>(
+        objective: &Objective,
+        points: &[T],
+        seed: u64,
+        slices: usize,
+        term: usize,
+    ) -> Self {
         let family = &objective.terms[term].family;
         // As many touches as the smallest family needs for its slices, in a large one too.
         let least = objective.terms.iter().map(|term| term.family.mean_size()).fold(f64::INFINITY, f64::min);
         let slices = (slices as f64 * least / family.mean_size()).ceil() as usize;
-        // Subsets of a direction are different ones: a family of a few large classes has one each.
+        // LabelSubsets of a direction are different ones: a family of a few large classes has one each.
         let per_direction = if family.visits() < DIRECTIONS * CLUSTER { 1 } else { CLUSTER };
         let clusters = slices.div_ceil(per_direction).max(DIRECTIONS);
         let pairs: Vec<(f64, f64)> = (0..clusters)
@@ -121,9 +149,9 @@ impl Moments {
 }
 
 /// Mean distance per touched sample of the table and of white noise, over the subsets of one direction.
-fn distances(
+fn distances<T: Copy + Into<f64>>(
     objective: &Objective,
-    points: &[f32],
+    points: &[T],
     seed: u64,
     term: usize,
     (cluster, clusters, per_direction): (usize, usize, usize),
@@ -178,4 +206,27 @@ fn distances(
     }
     let mass = per_direction as f64 * planned.family.mean_mass();
     (of_table / mass, of_noise / mass)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::{Config, LabelSubsets};
+    use crate::table::SampleTable;
+
+    #[test]
+    fn points_of_either_precision_are_measured_as_the_table_of_them() {
+        let config = Config::classes(&[20, 30], 2, &LabelSubsets::EachAndAll);
+        let (extent, dims) = (config.extent, config.dims);
+        let objective = Objective::new(&config).unwrap();
+        let table = SampleTable::white_noise(extent, dims, 1).unwrap();
+        let wide: Vec<f64> = table.values().iter().map(|&value| value.into()).collect();
+        let of_table = Bound::measure(&table, &objective, 2, 64).unwrap();
+        for points in [Samples::points(&wide, dims), Samples::points(table.values(), dims)] {
+            assert_eq!(Bound::measure(points.unwrap(), &objective, 2, 64).unwrap(), of_table);
+        }
+        let fewer = Samples::points(&wide[..40], dims).unwrap();
+        let error = Bound::measure(fewer, &objective, 2, 64).unwrap_err();
+        assert!(matches!(error, MeasureError::OtherShape { .. }), "{error}");
+    }
 }

@@ -1,12 +1,26 @@
 //! Whether points are where a density is, to the eye.
 
-use crate::error::ConfigError;
+use super::coordinates::Coordinates;
+use super::error::MeasureError;
+use super::samples::Samples;
+use crate::error::RangeError;
 use crate::targets::Density;
 
 /// How points follow a density after both are blurred.
+///
+/// ```
+/// use fsot::metrics::{DensityMatch, Samples};
+/// use fsot::targets::Density;
+///
+/// let left_half = Density::new(8, 1, vec![1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0])?;
+/// let points = Samples::points(&[0.1, 0.5, 0.4, 0.2, 0.9, 0.5], 2)?;
+/// assert_eq!(DensityMatch::measure(points, [0, 1], &left_half, 0.1)?.strays, 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DensityMatch {
-    /// Pearson's correlation of both blurred pictures over their pixels; 1 for a constant picture matched by a constant.
+    /// Pearson's correlation of both blurred pictures over their pixels; 1 for a constant picture matched by
+    /// a constant.
     pub correlation: f64,
     /// Points that the blurred density does not reach.
     pub strays: usize,
@@ -15,41 +29,40 @@ pub struct DensityMatch {
 /// Standard deviations after which the Gaussian ends.
 const REACH: f64 = 3.0;
 
-/// Blurs the density and the histogram of the points over its pixels with the Gaussian `exp(-r² / (2 sigma²))`, cut off after three
-/// standard deviations, and compares.
-///
-/// `sigma` is in units of the picture's longer side; about two distances between neighbouring points is what an eye blurs.
-/// `points` are pairs of coordinates in `[0, 1)`. O(points + pixels · sigma in pixels).
-///
-/// # Errors
-/// No points, an incomplete last one, coordinates outside `[0, 1)`; a `sigma` that is not positive, or beyond 1.
-pub fn density_match(points: &[f64], density: &Density, sigma: f64) -> Result<DensityMatch, ConfigError> {
-    if points.is_empty() {
-        return Err(crate::error::ExtentError::EmptyAxis { axis: "points" }.into());
+impl DensityMatch {
+    /// Blurs the density and the histogram of the points over its pixels with the Gaussian
+    /// `exp(-r² / (2 sigma²))`, cut off after three standard deviations, and compares.
+    ///
+    /// `dims` names the coordinates that run to the right and down. `sigma`, in `(0, 1]`, is in units of the
+    /// picture's longer side; about two distances between neighbouring points is what an eye blurs. O(points
+    /// + pixels · sigma in pixels).
+    ///
+    /// # Errors
+    /// Equal or missing dimensions; a `sigma` that is not positive, or beyond 1.
+    pub fn measure<'a>(
+        samples: impl Into<Samples<'a>>,
+        dims: [usize; 2],
+        density: &Density,
+        sigma: f64,
+    ) -> Result<Self, MeasureError> {
+        let points = Coordinates::gather(samples, &dims)?;
+        if !(sigma > 0.0 && sigma <= 1.0) {
+            let expected = "above 0, at most 1 (of the longer side)";
+            return Err(RangeError::new("sigma", sigma, expected).into());
+        }
+        let [width, height] = density.size();
+        let sigma_px = sigma * width.max(height) as f64;
+        let pixel = |point: &[f64]| {
+            let at = |value: f64, len: usize| ((value * len as f64) as usize).min(len - 1);
+            at(point[1], height) * width + at(point[0], width)
+        };
+        let mut histogram = vec![0.0; width * height];
+        points.points().for_each(|point| histogram[pixel(point)] += 1.0);
+        let wanted: Vec<f64> = density.values().iter().map(|&value| f64::from(value)).collect();
+        let [found, wanted] = [histogram, wanted].map(|picture| blurred(&picture, width, sigma_px));
+        let strays = points.points().filter(|point| wanted[pixel(point)] == 0.0).count();
+        Ok(Self { correlation: correlation(&found, &wanted), strays })
     }
-    if !points.len().is_multiple_of(2) {
-        let (_given, _expected) = (points.len(), points.len() + 1);
-        return Err(ConfigError::NoTerms);
-    }
-    if let Some(_index) = points.iter().position(|value| !(0.0..1.0).contains(value)) {
-        return Err(ConfigError::NoTerms);
-    }
-    if !(sigma > 0.0 && sigma <= 1.0) {
-        let expected = "above 0, at most 1 (of the longer side)";
-        return Err(crate::error::RangeError::new("sigma", sigma, expected).into());
-    }
-    let [width, height] = density.size();
-    let sigma_px = sigma * width.max(height) as f64;
-    let pixel = |point: &[f64]| {
-        let at = |value: f64, len: usize| ((value * len as f64) as usize).min(len - 1);
-        at(point[1], height) * width + at(point[0], width)
-    };
-    let mut histogram = vec![0.0; width * height];
-    points.chunks_exact(2).for_each(|point| histogram[pixel(point)] += 1.0);
-    let wanted: Vec<f64> = density.values().iter().map(|&value| f64::from(value)).collect();
-    let [found, wanted] = [histogram, wanted].map(|picture| blurred(&picture, width, sigma_px));
-    let strays = points.chunks_exact(2).filter(|point| wanted[pixel(point)] == 0.0).count();
-    Ok(DensityMatch { correlation: correlation(&found, &wanted), strays })
 }
 
 /// A picture under a Gaussian; beyond its edges there is nothing.
@@ -102,9 +115,12 @@ mod tests {
         let grid = |right: f64| -> Vec<f64> {
             (0..32 * 32).flat_map(|i| [f64::from(i % 32) / 32.0 * right, f64::from(i / 32) / 32.0]).collect()
         };
-        let good = density_match(&grid(0.25), &density, 0.02).unwrap();
+        let measure = |points: Vec<f64>| {
+            DensityMatch::measure(Samples::points(&points, 2).unwrap(), [0, 1], &density, 0.02).unwrap()
+        };
+        let good = measure(grid(0.25));
         assert!(good.correlation > 0.99 && good.strays == 0, "{good:?}");
-        let bad = density_match(&grid(1.0), &density, 0.02).unwrap();
+        let bad = measure(grid(1.0));
         // Columns from 0.25 + 3 · 0.02 on: 22 of 32.
         assert!(bad.correlation < 0.5 && (21..=23).contains(&(bad.strays / 32)), "{bad:?}");
     }

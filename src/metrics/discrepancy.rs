@@ -2,31 +2,53 @@
 
 use rayon::prelude::*;
 
-use super::error_image::Points;
-use crate::error::ConfigError;
-use crate::table::SampleTable;
+use super::coordinates::Coordinates;
+use super::error::MeasureError;
+use super::samples::Samples;
 
-/// Squared L2-star discrepancy of the samples of a frame, averaged over frames, as ratio to the expectation
-/// `(2^−D − 3^−D) / n` of `n` independent random samples: 1 is random, 0 is perfect.
+/// Squared L2-star discrepancy of the samples of a frame, averaged over frames.
 ///
 /// The discrepancy compares the share of samples in every box `[0, z)` with its volume,
-/// `T² = ∫ (#{x_i < z} / n − Π z_d)² dz`, and has the closed form (Warnock 1972, "Computational investigations of
-/// low-discrepancy point sets")
+/// `T² = ∫ (#{x_i < z} / n − Π z_d)² dz`, and has the closed form (Warnock 1972, "Computational investigations
+/// of low-discrepancy point sets")
 /// `T² = 3^−D − 2/n Σ_i Π_d (1 − x_id²)/2 + 1/n² Σ_ij Π_d (1 − max(x_id, x_jd))`.
 ///
-/// O(frames · n² · D), n samples per frame: 64 × 64 pixels take some 10 ms, 256 × 256 some 5 s on one core.
-/// Parallel, and independent of the number of threads.
+/// ```
+/// use fsot::metrics::{Discrepancy, Samples};
 ///
-/// # Errors
-/// A bad dimension group (as in [`super::error_image()`]).
-pub fn l2_star_discrepancy(table: &SampleTable, dims: &[usize]) -> Result<f64, ConfigError> {
-    let points = Points::new(table, dims, dims.len())?;
-    let extent = table.extent();
-    let per_frame = extent.samples() / extent.frames;
-    let frames = points.coordinates().chunks_exact(per_frame * dims.len());
-    let sum: f64 = frames.map(|frame| squared(frame, dims.len())).sum();
-    let half_third = 0.5_f64.powi(dims.len() as i32) - 3.0_f64.powi(-(dims.len() as i32));
-    Ok(sum / extent.frames as f64 * per_frame as f64 / half_third)
+/// // n centred points on the line: T² = 1 / (12 n²).
+/// let points = Samples::points(&[0.125, 0.375, 0.625, 0.875], 1)?;
+/// let discrepancy = Discrepancy::measure(points, &[0])?;
+/// assert!((discrepancy.squared - 1.0 / 192.0).abs() < 1e-15);
+/// assert!((discrepancy.ratio_to_white_noise - 1.0 / 8.0).abs() < 1e-13);
+/// # Ok::<(), fsot::metrics::MeasureError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Discrepancy {
+    /// `T²`, in `[0, 1]`.
+    pub squared: f64,
+    /// `T²` over the expectation `(2^−D − 3^−D) / n` of `n` independent random samples: 1 is random, 0 is
+    /// perfect.
+    pub ratio_to_white_noise: f64,
+}
+
+impl Discrepancy {
+    /// Measures the dimension group `dims` of samples.
+    ///
+    /// O(frames · n² · D), n samples per frame: 64 × 64 pixels take some 10 ms, 256 × 256 some 5 s on one
+    /// core. Parallel, and independent of the number of threads.
+    ///
+    /// # Errors
+    /// A dimension group that is empty, repeats a dimension or exceeds those of the samples.
+    pub fn measure<'a>(samples: impl Into<Samples<'a>>, dims: &[usize]) -> Result<Self, MeasureError> {
+        let points = Coordinates::gather(samples, dims)?;
+        let extent = points.extent;
+        let per_frame = extent.samples() / extent.frames;
+        let frames = points.values().chunks_exact(per_frame * dims.len());
+        let squared = frames.map(|frame| squared(frame, dims.len())).sum::<f64>() / extent.frames as f64;
+        let half_third = 0.5_f64.powi(dims.len() as i32) - 3.0_f64.powi(-(dims.len() as i32));
+        Ok(Self { squared, ratio_to_white_noise: squared * per_frame as f64 / half_third })
+    }
 }
 
 /// Squared discrepancy of points `[point][dim]`.
@@ -66,10 +88,11 @@ mod tests {
     use super::*;
     use crate::metrics::Estimate;
     use crate::random;
+    use crate::table::SampleTable;
     use crate::table::extent::Extent;
 
-    /// The integral itself: the integrand is a polynomial of degree 2 per axis between the points' coordinates,
-    /// which a two-point Gauss rule on every cell of their grid integrates exactly.
+    /// The integral itself: the integrand is a polynomial of degree 2 per axis between the points'
+    /// coordinates, which a two-point Gauss rule on every cell of their grid integrates exactly.
     fn by_integration(points: &[f64], dims: usize) -> f64 {
         let grids: Vec<Vec<(f64, f64)>> = (0..dims)
             .map(|d| {
@@ -118,7 +141,7 @@ mod tests {
         let ratios: Vec<f64> = (0..200)
             .map(|seed| {
                 let table = SampleTable::white_noise(extent, 3, seed).unwrap();
-                l2_star_discrepancy(&table, &[2, 0]).unwrap()
+                Discrepancy::measure(&table, &[2, 0]).unwrap().ratio_to_white_noise
             })
             .collect();
         let over = Estimate::of(ratios.into_iter());
@@ -127,7 +150,7 @@ mod tests {
         let values = (0..100).map(|i| (i as f32 + 0.5) / 100.0).collect();
         let table = SampleTable::new(extent, 1, values).unwrap();
         // In one dimension T² = 1/(12 n²) for centred points, so the ratio is 1/(2 n).
-        let ratio = l2_star_discrepancy(&table, &[0]).unwrap();
+        let ratio = Discrepancy::measure(&table, &[0]).unwrap().ratio_to_white_noise;
         assert!((ratio - 0.005).abs() < 1e-7, "{ratio}");
     }
 }

@@ -2,24 +2,37 @@
 
 use rustfft::num_complex::Complex64;
 
-use super::error_image::Points;
-use super::families::Integrands;
+use super::coordinates::Coordinates;
+use super::error::MeasureError;
 use super::fft::Transform;
+use super::integrands::Integrands;
 use super::ratios::Ratios;
-use crate::error::ConfigError;
+use super::samples::Samples;
 use crate::kernel::{Kernel, TemporalKernel};
-use crate::table::SampleTable;
 use crate::table::extent::Extent;
 
 /// Mean squared error of a table before and after filtering, each as ratio to white noise of the same shape.
 ///
-/// The filter replaces the error image `e` by `Σ_tap w e(p + tap) / Σ_tap w`, which wraps in space and time. The
-/// squared error is averaged over all pixels and frames, then divided by its expectation for white noise,
+/// The filter replaces the error image `e` by `Σ_tap w e(p + tap) / Σ_tap w`, which wraps in space and time.
+/// The squared error is averaged over all pixels and frames, then divided by its expectation for white noise,
 /// `Var f / spp` before and `Var f / spp · Σw² / (Σw)²` after filtering.
-#[derive(Clone, Copy, Debug, PartialEq)]
+///
+/// ```
+/// use fsot::kernel::{SpatialKernel, TemporalKernel};
+/// use fsot::metrics::{FilteredError, Integrands};
+/// use fsot::{Extent, Kernel, SampleTable};
+///
+/// let extent = Extent { frames: 1, height: 16, width: 16, spp: 1 };
+/// let table = SampleTable::white_noise(extent, 2, 0)?;
+/// let eye = Kernel::product(SpatialKernel::Gaussian { sigma_px: 2.1 }, TemporalKernel::None);
+/// let error = FilteredError::measure(&table, &[0, 1], &Integrands::random(2, 16, 0)?, &eye)?;
+/// assert!((0.5..1.5).contains(&error.spatial.mean.mean));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
 pub struct FilteredError {
-    /// Without filter: the error of single pixels. 1 for any table that has one sample per pixel and fills the
-    /// cube uniformly.
+    /// Without filter: the error of single pixels. 1 for any table that has one sample per pixel and fills
+    /// the cube uniformly.
     pub unfiltered: Ratios,
     /// After the spatial part of the kernel alone.
     pub spatial: Ratios,
@@ -27,52 +40,56 @@ pub struct FilteredError {
     pub spatio_temporal: Ratios,
 }
 
-/// Measures the dimension group `dims` of a table with a kernel, over test integrands of as many coordinates.
-///
-/// The kernel's truncation counts: with the default, weights below 0.1 % are dropped. Cost per integrand:
-/// O(samples · dims) to evaluate and O(sites log sites) to filter. Runs on rayon's current pool; the result does
-/// not depend on the number of threads.
-///
-/// # Errors
-/// A bad kernel; a bad dimension group (as in [`super::error_image()`]).
-pub fn filtered_error(
-    table: &SampleTable,
-    dims: &[usize],
-    kernel: &Kernel,
-    integrands: &Integrands,
-) -> Result<FilteredError, ConfigError> {
-    let points = Points::new(table, dims, integrands.dims())?;
-    let extent = table.extent();
-    let meter = Meter::new(&extent, kernel)?;
-    let [unfiltered, spatial, spatio_temporal] = Ratios::over(
-        integrands,
-        || meter.transform.scratch(),
-        |scratch, pair, ratios| {
-            // Two real images ride in one complex transform.
-            scratch.data.fill(Complex64::default());
-            for (site, error) in scratch.data.iter_mut().zip(points.errors(&pair[0])) {
-                site.re = error;
-            }
-            if let Some(second) = pair.get(1) {
-                for (site, error) in scratch.data.iter_mut().zip(points.errors(second)) {
-                    site.im = error;
+impl FilteredError {
+    /// Measures the dimension group `dims` of samples over test integrands of as many coordinates, with a
+    /// kernel.
+    ///
+    /// The kernel's truncation counts: with the default, weights below 0.1 % are dropped. Cost per integrand:
+    /// O(samples · dims) to evaluate and O(sites log sites) to filter. Runs on rayon's current pool; the
+    /// result does not depend on the number of threads.
+    ///
+    /// # Errors
+    /// A dimension group that is empty, repeats a dimension, exceeds those of the samples, or has another
+    /// length than integrands have coordinates; a bad kernel.
+    pub fn measure<'a>(
+        samples: impl Into<Samples<'a>>,
+        dims: &[usize],
+        integrands: &Integrands,
+        kernel: &Kernel,
+    ) -> Result<Self, MeasureError> {
+        let points = Coordinates::gather(samples, dims)?.fitting("an integrand", integrands.dims())?;
+        let extent = points.extent;
+        let meter = Meter::new(&extent, kernel)?;
+        let [unfiltered, spatial, spatio_temporal] = Ratios::over(
+            integrands,
+            || meter.transform.scratch(),
+            |scratch, pair, ratios| {
+                // Two real images ride in one complex transform.
+                scratch.data.fill(Complex64::default());
+                for (site, error) in scratch.data.iter_mut().zip(points.errors(&pair[0])) {
+                    site.re = error;
                 }
-            }
-            meter.transform.forward(scratch);
-            let errors = meter.mean_squares(&scratch.data);
-            for ((ratio, integrand), error) in ratios.iter_mut().zip(pair).zip(errors) {
-                let white = integrand.variance() / extent.spp as f64;
-                *ratio = std::array::from_fn(|k| error[k] / (white * meter.white[k]));
-            }
-        },
-    );
-    Ok(FilteredError { unfiltered, spatial, spatio_temporal })
+                if let Some(second) = pair.get(1) {
+                    for (site, error) in scratch.data.iter_mut().zip(points.errors(second)) {
+                        site.im = error;
+                    }
+                }
+                meter.transform.forward(scratch);
+                let errors = meter.mean_squares(&scratch.data);
+                for ((ratio, integrand), error) in ratios.iter_mut().zip(pair).zip(errors) {
+                    let white = integrand.variance() / extent.spp as f64;
+                    *ratio = std::array::from_fn(|k| error[k] / (white * meter.white[k]));
+                }
+            },
+        );
+        Ok(Self { unfiltered, spatial, spatio_temporal })
+    }
 }
 
 /// Mean squares of an image before and after filtering, from its Fourier transform.
 ///
-/// By Parseval the mean over sites of the squared filtered image is `Σ_k |E(k)|² |W(k)|² / N²`, so that nothing
-/// is transformed back. (A kernel tap shifts the other way than in a convolution; `|W|` is the same.)
+/// By Parseval the mean over sites of the squared filtered image is `Σ_k |E(k)|² |W(k)|² / N²`, so that
+/// nothing is transformed back. (A kernel tap shifts the other way than in a convolution; `|W|` is the same.)
 struct Meter {
     transform: Transform,
     mirrors: Vec<u32>,
@@ -83,14 +100,14 @@ struct Meter {
 }
 
 impl Meter {
-    fn new(extent: &Extent, kernel: &Kernel) -> Result<Self, ConfigError> {
+    fn new(extent: &Extent, kernel: &Kernel) -> Result<Self, MeasureError> {
         let transform = Transform::new(extent.frames, extent.height, extent.width);
         let spatial = Kernel { temporal: TemporalKernel::None, ..kernel.clone() };
         let mut power = vec![[1.0; 3]; transform.len()];
         let mut white = [1.0; 3];
         let mut scratch = transform.scratch();
         for (stage, kernel) in [(1, &spatial), (2, kernel)] {
-            let taps = kernel.taps(extent).unwrap();
+            let taps = kernel.taps(extent)?;
             let sum: f64 = taps.iter().map(|tap| tap.weight).sum();
             white[stage] = taps.iter().map(|tap| (tap.weight / sum).powi(2)).sum();
             scratch.data.fill(Complex64::default());
@@ -111,9 +128,9 @@ impl Meter {
     fn mean_squares(&self, image: &[Complex64]) -> [[f64; 3]; 2] {
         let mut sums = [[0.0; 3]; 2];
         for ((&value, &mirror), power) in image.iter().zip(&self.mirrors).zip(&self.power) {
-            // The parts' transforms are A = (Z(k) + Z(−k)*) / 2 and B = (Z(k) − Z(−k)*) / 2i. Over the pair of
-            // k and −k, on which the power of a real kernel is equal, |A|² sums to |Z|² + Re Z(k) Z(−k), twice
-            // over, and |B|² to the difference.
+            // The parts' transforms are A = (Z(k) + Z(−k)*) / 2 and B = (Z(k) − Z(−k)*) / 2i. Over the pair
+            // of k and −k, on which the power of a real kernel is equal, |A|² sums to |Z|² + Re Z(k) Z(−k),
+            // twice over, and |B|² to the difference.
             let (square, cross) = (value.norm_sqr(), (value * image[mirror as usize]).re);
             for stage in 0..3 {
                 sums[0][stage] += power[stage] * (square + cross);
@@ -126,139 +143,4 @@ impl Meter {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::kernel::SpatialKernel;
-    use crate::metrics::{Family, error_image};
-    use approx::assert_relative_eq;
-
-    const EXTENT: Extent = Extent { frames: 3, height: 10, width: 12, spp: 4 };
-
-    fn kernel() -> Kernel {
-        let temporal = TemporalKernel::Taps(vec![0.5, 1.0, 0.25]);
-        Kernel::product(SpatialKernel::Gaussian { sigma_px: 1.5 }, temporal)
-    }
-
-    fn stages(measured: &FilteredError) -> [Ratios; 3] {
-        [measured.unfiltered, measured.spatial, measured.spatio_temporal]
-    }
-
-    /// The definition, tap by tap.
-    fn direct(image: &ndarray::Array3<f64>, extent: &Extent, kernel: &Kernel) -> f64 {
-        let taps = kernel.taps(extent).unwrap();
-        let sum: f64 = taps.iter().map(|tap| tap.weight).sum();
-        let squares = (0..extent.sites()).map(|site| {
-            let filtered: f64 = taps
-                .iter()
-                .map(|tap| {
-                    let offset = (tap.dt.into(), tap.dy.into(), tap.dx.into());
-                    let at = extent.wrapped(extent.site(site), offset);
-                    tap.weight * image[[at.frame, at.y, at.x]]
-                })
-                .sum();
-            (filtered / sum).powi(2)
-        });
-        squares.sum::<f64>() / extent.sites() as f64
-    }
-
-    #[test]
-    fn parseval_agrees_with_direct_convolution() {
-        let table = SampleTable::white_noise(EXTENT, 3, 5).unwrap();
-        let dims = [2, 0];
-        let lopsided = vec![
-            crate::kernel::SpatialTap { dy: 0, dx: 1, weight: 1.0 },
-            crate::kernel::SpatialTap { dy: -2, dx: 0, weight: 0.3 },
-        ];
-        let odd = Kernel { spatial: SpatialKernel::Taps(lopsided), ..kernel() };
-        for kernel in [kernel(), odd] {
-            // An odd number, so that a transform with an empty imaginary part occurs as well.
-            let integrands = Integrands::random(2, 3, 8).unwrap();
-            let measured = filtered_error(&table, &dims, &kernel, &integrands).unwrap();
-            let spatial = Kernel { temporal: TemporalKernel::None, ..kernel.clone() };
-            let point = Kernel::product(SpatialKernel::Box { size_px: 1 }, TemporalKernel::None);
-            for (ratios, kernel) in stages(&measured).iter().zip([&point, &spatial, &kernel]) {
-                let taps = kernel.taps(&EXTENT).unwrap();
-                let sum: f64 = taps.iter().map(|tap| tap.weight).sum();
-                let white: f64 = taps.iter().map(|tap| (tap.weight / sum).powi(2)).sum();
-                for family in Family::ALL {
-                    let ratio = |f| {
-                        let image = error_image(&table, &dims, f).unwrap();
-                        direct(&image, &EXTENT, kernel) / (f.variance() / 4.0 * white)
-                    };
-                    let expected = integrands.family(family).iter().map(ratio).sum::<f64>() / 3.0;
-                    assert_relative_eq!(ratios.family(family).mean, expected, max_relative = 1e-10);
-                }
-            }
-        }
-    }
-
-    /// Mean over 64 tables, within 4 standard errors of 1 in every family and stage (15 checks, p = 1e-3 in all).
-    #[test]
-    fn white_noise_is_one() {
-        let integrands = Integrands::random(2, 32, 3).unwrap();
-        let tables: Vec<FilteredError> = (0..64)
-            .map(|seed| {
-                let table = SampleTable::white_noise(EXTENT, 2, 100 + seed).unwrap();
-                filtered_error(&table, &[0, 1], &kernel(), &integrands).unwrap()
-            })
-            .collect();
-        for stage in 0..3 {
-            let check = |name: &str, pick: &dyn Fn(&Ratios) -> f64| {
-                let over = super::super::Estimate::of(tables.iter().map(|table| pick(&stages(table)[stage])));
-                let deviation = (over.mean - 1.0) / over.standard_error;
-                assert!(deviation.abs() < 4.0, "{name}, stage {stage}: {over:?}");
-                assert!(over.standard_error < 0.1, "{name}, stage {stage}: {over:?}");
-            };
-            check("mean", &|ratios| ratios.mean.mean);
-            for family in Family::ALL {
-                check(family.name(), &|ratios| ratios.family(family).mean);
-            }
-        }
-    }
-
-    #[test]
-    fn equal_points_err_by_the_value_at_the_point() {
-        let table = SampleTable::new(EXTENT, 2, vec![0.625; EXTENT.samples() * 2]).unwrap();
-        let integrands = Integrands::random(2, 6, 1).unwrap();
-        let measured = filtered_error(&table, &[0, 1], &kernel(), &integrands).unwrap();
-        for (ratios, kernel) in stages(&measured)[1..]
-            .iter()
-            .zip([Kernel { temporal: TemporalKernel::None, ..kernel() }, kernel()])
-        {
-            let taps = kernel.taps(&EXTENT).unwrap();
-            let sum: f64 = taps.iter().map(|tap| tap.weight).sum();
-            let white: f64 = taps.iter().map(|tap| (tap.weight / sum).powi(2)).sum();
-            for family in Family::ALL {
-                let of = integrands.family(family).iter();
-                // A constant image passes a normalised filter unchanged.
-                let ratio = of.map(|f| {
-                    let error = f.value(&[0.625, 0.625]) - f.integral();
-                    error * error / (f.variance() / 4.0 * white)
-                });
-                let expected = ratio.sum::<f64>() / 6.0;
-                assert_relative_eq!(ratios.family(family).mean, expected, max_relative = 1e-10);
-            }
-        }
-    }
-
-    #[test]
-    fn a_single_frame_has_no_time_to_filter() {
-        let extent = Extent { frames: 1, height: 8, width: 6, spp: 1 };
-        let table = SampleTable::white_noise(extent, 2, 5).unwrap();
-        let integrands = Integrands::random(2, 4, 1).unwrap();
-        let measured = filtered_error(&table, &[0, 1], &kernel(), &integrands).unwrap();
-        let (space, both) = (measured.spatial.mean.mean, measured.spatio_temporal.mean.mean);
-        assert_relative_eq!(space, both, max_relative = 1e-12);
-    }
-
-    #[test]
-    fn the_number_of_threads_changes_nothing() {
-        let table = SampleTable::white_noise(EXTENT, 4, 5).unwrap();
-        let integrands = Integrands::random(4, 16, 1).unwrap();
-        let on = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| filtered_error(&table, &[0, 1, 2, 3], &kernel(), &integrands).unwrap())
-        };
-        assert_eq!(on(1), on(2));
-    }
-}
+mod tests;

@@ -1,11 +1,22 @@
 //! Means over test integrands, with their standard errors.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
-use super::families::{Family, Integrands};
-use super::integrands::Integrand;
+use super::integrand::Integrand;
+use super::integrands::Integrands;
 
 /// A mean and the uncertainty that the finite number of integrands leaves.
+///
+/// ```
+/// use fsot::metrics::{Integrands, Samples, SetError};
+///
+/// let points = Samples::points(&[0.25, 0.75], 1)?;
+/// let single = SetError::measure(points, &[0], &Integrands::random(1, 1, 0)?)?.ratios;
+/// assert!(single.mean.mean > 0.0 && single.mean.standard_error.is_nan());
+/// # Ok::<(), fsot::metrics::MeasureError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// The mean.
@@ -16,11 +27,45 @@ pub struct Estimate {
 }
 
 /// A ratio to white noise (1 = independent random numbers), measured over test integrands.
-#[derive(Clone, Copy, Debug, PartialEq)]
+///
+/// ```
+/// use fsot::metrics::{Family, Integrands, Samples, SetError};
+///
+/// let points = Samples::points(&[0.25, 0.75], 1)?;
+/// let ratios = SetError::measure(points, &[0], &Integrands::random(1, 8, 0)?)?.ratios;
+/// for family in &ratios.families {
+///     println!("{:10} {:.3} ± {:.3}", family.name, family.ratio.mean, family.ratio.standard_error);
+/// }
+/// assert_eq!(ratios.family(Family::SMOOTH), Some(ratios.families[1].ratio));
+/// assert_eq!(ratios.family("stained glass"), None);
+/// # Ok::<(), fsot::metrics::MeasureError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
 pub struct Ratios {
-    families: [Estimate; 4],
-    /// Mean of the four families.
+    /// Mean of every family, in the order of [`Integrands::families`].
+    pub families: Vec<FamilyRatio>,
+    /// Mean of the families, which count alike.
     pub mean: Estimate,
+}
+
+/// The ratio of one family.
+///
+/// ```
+/// use fsot::metrics::{Integrand, Integrands, Samples, SetError};
+///
+/// let linear = Integrand::new(1, |x| x[0], 0.5, 1.0 / 12.0)?;
+/// let points = Samples::points(&[0.25, 0.75], 1)?;
+/// let error = SetError::measure(points, &[0], &Integrands::own(1, "linear", vec![linear])?)?;
+/// let [family] = error.ratios.families.as_slice() else { panic!() };
+/// assert_eq!((&*family.name, family.ratio.mean), ("linear", 0.0));
+/// # Ok::<(), fsot::metrics::MeasureError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct FamilyRatio {
+    /// Name of the family.
+    pub name: Arc<str>,
+    /// Mean over its integrands.
+    pub ratio: Estimate,
 }
 
 impl Estimate {
@@ -34,9 +79,9 @@ impl Estimate {
 }
 
 impl Ratios {
-    /// Mean over the integrands of one family.
-    pub fn family(&self, family: Family) -> Estimate {
-        self.families[family as usize]
+    /// Mean over the integrands of the family with this name, if there is one.
+    pub fn family(&self, name: &str) -> Option<Estimate> {
+        self.families.iter().find(|family| &*family.name == name).map(|family| family.ratio)
     }
 
     /// `K` ratios of every integrand, averaged.
@@ -48,20 +93,28 @@ impl Ratios {
         scratch: impl Fn() -> S + Sync,
         measure: impl Fn(&mut S, &[Integrand], &mut [[f64; K]]) + Sync,
     ) -> [Self; K] {
-        let ratios = Family::ALL.map(|family| {
-            let chosen = integrands.family(family);
-            let mut ratios = vec![[0.0; K]; chosen.len()];
-            ratios
-                .par_chunks_mut(2)
-                .zip(chosen.par_chunks(2))
-                .for_each_init(&scratch, |scratch, (ratios, pair)| measure(scratch, pair, ratios));
-            ratios
-        });
+        let measured: Vec<Vec<[f64; K]>> = integrands
+            .families()
+            .iter()
+            .map(|family| {
+                let mut ratios = vec![[0.0; K]; family.integrands().len()];
+                ratios
+                    .par_chunks_mut(2)
+                    .zip(family.integrands().par_chunks(2))
+                    .for_each_init(&scratch, |scratch, (ratios, pair)| measure(scratch, pair, ratios));
+                ratios
+            })
+            .collect();
         std::array::from_fn(|k| {
-            let families = ratios.each_ref().map(|family| Estimate::of(family.iter().map(|r| r[k])));
-            let mean = families.iter().map(|f| f.mean).sum::<f64>() / 4.0;
-            let variance = families.iter().map(|f| f.standard_error.powi(2)).sum::<f64>();
-            Self { families, mean: Estimate { mean, standard_error: variance.sqrt() / 4.0 } }
+            let of_family = |ratios: &Vec<[f64; K]>| Estimate::of(ratios.iter().map(|ratio| ratio[k]));
+            let estimates: Vec<Estimate> = measured.iter().map(of_family).collect();
+            let count = estimates.len() as f64;
+            let mean = estimates.iter().map(|family| family.mean).sum::<f64>() / count;
+            let variance = estimates.iter().map(|family| family.standard_error.powi(2)).sum::<f64>();
+            let named = integrands.families().iter().zip(estimates);
+            let families = named.map(|(family, ratio)| FamilyRatio { name: family.shared_name(), ratio });
+            let mean = Estimate { mean, standard_error: variance.sqrt() / count };
+            Self { families: families.collect(), mean }
         })
     }
 }
@@ -90,8 +143,8 @@ mod tests {
                 }
             },
         );
-        let mean = |family| integrands.family(family).iter().map(|f| f.variance()).sum::<f64>() / 5.0;
-        approx::assert_relative_eq!(variance.mean.mean, Family::ALL.map(mean).iter().sum::<f64>() / 4.0);
+        let mean = integrands.iter().map(|f| f.variance()).sum::<f64>() / 20.0;
+        approx::assert_relative_eq!(variance.mean.mean, mean, max_relative = 1e-14);
         assert_eq!(one.mean, Estimate { mean: 1.0, standard_error: 0.0 });
     }
 }

@@ -1,43 +1,59 @@
 //! Integration error of a point set: of a prefix, of a class.
 
-use rayon::prelude::*;
-
-use super::families::Integrands;
+use super::coordinates::Coordinates;
+use super::error::MeasureError;
+use super::integrands::Integrands;
 use super::ratios::Ratios;
-use crate::error::ConfigError;
+use super::samples::Samples;
 
-/// Squared error of the mean over a point set of test integrands, as ratio to as many independent random points.
+/// Squared error of the mean over all samples, as ratio to as many independent random points.
 ///
-/// `points` holds one coordinate per dimension of the integrands for each point. Times `1 / points` and the variance it is the
-/// squared error itself: a ratio that falls in proportion to the number of points means an error that falls by its square.
-/// O(points) per integrand; parallel, and independent of the number of threads.
+/// Times the variance and over the number of points it is the squared error itself: a ratio that falls in
+/// proportion to the number of points means an error that falls by its square. The samples of a table count
+/// as one set.
 ///
-/// # Errors
-/// No points, or an incomplete last one; coordinates outside `[0, 1)`.
-pub fn set_error(points: &[f64], integrands: &Integrands) -> Result<Ratios, ConfigError> {
-    let dims = integrands.dims();
-    if points.is_empty() {
-        return Err(crate::error::ExtentError::EmptyAxis { axis: "points" }.into());
+/// ```
+/// use fsot::metrics::{Integrands, Samples, SetError};
+///
+/// let centres: Vec<f32> = (0..64).map(|i| (i as f32 + 0.5) / 64.0).collect();
+/// let points = Samples::points(&centres, 1)?;
+/// let error = SetError::measure(points, &[0], &Integrands::random(1, 16, 0)?)?;
+/// assert!(error.ratios.mean.mean < 0.05);
+/// # Ok::<(), fsot::metrics::MeasureError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct SetError {
+    /// 1 is random, 0 is exact.
+    pub ratios: Ratios,
+}
+
+impl SetError {
+    /// Measures the dimension group `dims` of samples over test integrands of as many coordinates.
+    ///
+    /// O(samples · dims) per integrand; parallel, and independent of the number of threads.
+    ///
+    /// # Errors
+    /// A dimension group that is empty, repeats a dimension, exceeds those of the samples, or has another
+    /// length than integrands have coordinates.
+    pub fn measure<'a>(
+        samples: impl Into<Samples<'a>>,
+        dims: &[usize],
+        integrands: &Integrands,
+    ) -> Result<Self, MeasureError> {
+        let points = Coordinates::gather(samples, dims)?.fitting("an integrand", integrands.dims())?;
+        let count = points.count() as f64;
+        let [ratios] = Ratios::over(
+            integrands,
+            || (),
+            |(), pair, ratios| {
+                for (integrand, ratio) in pair.iter().zip(ratios) {
+                    let sum: f64 = points.points().map(|point| integrand.value(point)).sum();
+                    *ratio = [(sum / count - integrand.integral()).powi(2) * count / integrand.variance()];
+                }
+            },
+        );
+        Ok(Self { ratios })
     }
-    if !points.len().is_multiple_of(dims) {
-        let _expected = points.len().next_multiple_of(dims);
-        return Err(ConfigError::NoTerms);
-    }
-    if let Some(_index) = points.par_iter().position_first(|value| !(0.0..1.0).contains(value)) {
-        return Err(ConfigError::NoTerms);
-    }
-    let count = (points.len() / dims) as f64;
-    let [ratios] = Ratios::over(
-        integrands,
-        || (),
-        |(), pair, ratios| {
-            for (integrand, ratio) in pair.iter().zip(ratios) {
-                let sum: f64 = points.chunks_exact(dims).map(|point| integrand.value(point)).sum();
-                *ratio = [(sum / count - integrand.integral()).powi(2) * count / integrand.variance()];
-            }
-        },
-    );
-    Ok(ratios)
 }
 
 #[cfg(test)]
@@ -50,21 +66,11 @@ mod tests {
     fn independent_points_have_ratio_1() {
         let integrands = Integrands::random(2, 16, 3).unwrap();
         let of = |seed| {
-            let points: Vec<f64> = random::uniforms(seed, 128).into_iter().map(f64::from).collect();
-            set_error(&points, &integrands).unwrap().mean.mean
+            let points = random::uniforms(seed, 128);
+            let points = Samples::points(&points, 2).unwrap();
+            SetError::measure(points, &[0, 1], &integrands).unwrap().ratios.mean.mean
         };
         let mean = (0..256).map(of).sum::<f64>() / 256.0;
         assert!((mean - 1.0).abs() < 0.15, "{mean}");
-    }
-
-    #[test]
-    fn what_is_no_set_is_refused() {
-        let integrands = Integrands::random(2, 1, 3).unwrap();
-        assert_eq!(
-            set_error(&[], &integrands),
-            Err(crate::error::ExtentError::EmptyAxis { axis: "points" }.into())
-        );
-        assert!(matches!(set_error(&[0.5], &integrands), Err(ConfigError::NoTerms)));
-        assert!(matches!(set_error(&[0.5, 1.0], &integrands), Err(ConfigError::NoTerms)));
     }
 }

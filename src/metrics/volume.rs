@@ -70,7 +70,8 @@ mod tests {
             let (b, a) = angle.sin_cos();
             for share in [0.02, 0.3, 0.5, 0.77, 0.99] {
                 let offset = (a.min(0.0) + b.min(0.0)) + share * (a.abs() + b.abs());
-                // A chord in x at every y. Midpoint rule of a piecewise linear function: error below h²·slope.
+                // A chord in x at every y. Midpoint rule of a piecewise linear function: error below
+                // h²·slope.
                 let expected = midpoint(100_000, |y| {
                     let edge = (offset - b * y) / a;
                     if a > 0.0 { inside(0.0, edge) } else { inside(edge, 1.0) }

@@ -12,7 +12,7 @@ fn published(seed: u64) -> Config {
 }
 
 fn histogram(table: &SampleTable) -> Histogram {
-    Histogram::new(table, [0, 1], 8).unwrap()
+    Histogram::measure(table, [0, 1], 8).unwrap()
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> f64 {

@@ -80,8 +80,8 @@ fn the_standard_error_falls_with_the_root() {
     let descended = |term: &&Term| term.role == Role::Descend;
     let terms = config.terms.iter().filter(descended).cloned().collect();
     let objective = Objective::new(&config.with_terms(terms)).unwrap();
-    let few = metrics::bound(&objective, &table, 1, 2048).unwrap().total;
-    let many = metrics::bound(&objective, &table, 2, 16 * 2048).unwrap().total;
+    let few = metrics::Bound::measure(&table, &objective, 1, 2048).unwrap().total;
+    let many = metrics::Bound::measure(&table, &objective, 2, 16 * 2048).unwrap().total;
     let fall = few.standard_error / many.standard_error;
     assert!((2.8..5.6).contains(&fall), "{fall}");
     // And the two agree within 4 of them.
@@ -102,7 +102,7 @@ fn the_bound_is_exact_on_the_line() {
     };
     let objective = Objective::new(&Config::new(extent, 1).with_terms(vec![term])).unwrap();
     let table = SampleTable::new(extent, 1, vec![0.6, 0.1]).unwrap();
-    let bound = metrics::bound(&objective, &table, 1, 256).unwrap();
+    let bound = metrics::Bound::measure(&table, &objective, 1, 256).unwrap();
     // ∫ |u − 0.1| over [0, 1/2] and ∫ |u − 0.6| over [1/2, 1], the same along −1.
     let expected = (0.01 + 0.16) / 2.0 + (0.01 + 0.16) / 2.0;
     // The table holds 0.1 and 0.6 as f32.
@@ -122,7 +122,7 @@ fn the_weighted_form_is_tighter() {
         let mut config = config.clone().with_form(form);
         config.terms.truncate(1);
         let objective = Objective::new(&config).unwrap();
-        metrics::bound(&objective, &table, 5, 4096).unwrap().total
+        metrics::Bound::measure(&table, &objective, 5, 4096).unwrap().total
     };
     let (weighted, level_sets) = (value(FilterForm::Weighted), value(FilterForm::LevelSets));
     let error = weighted.standard_error.hypot(level_sets.standard_error);

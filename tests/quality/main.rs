@@ -29,6 +29,6 @@ fn optimized(config: &Config, slices_per_class: u64) -> Optimizer {
 /// Ratio of the bound to white noise, with its standard error.
 fn ratio(optimizer: &Optimizer, table: &SampleTable, slices: usize) -> (f64, f64) {
     let seed = optimizer.config().seed;
-    let total = metrics::bound(optimizer.objective(), table, seed, slices).unwrap().total;
+    let total = metrics::Bound::measure(table, optimizer.objective(), seed, slices).unwrap().total;
     (total.ratio_to_white_noise, total.ratio_standard_error)
 }

@@ -3,8 +3,9 @@
 use fsot::classes::{Classes, FilterForm};
 use fsot::config::{Descent, Domain, Role, Schedule, Term};
 use fsot::kernel::{SpatialKernel, SpatialTap, TemporalKernel};
+use fsot::metrics::MeasureError;
 use fsot::targets::Target;
-use fsot::{Config, ConfigError, Kernel, Optimizer, SampleTable, metrics};
+use fsot::{Config, Kernel, Optimizer, SampleTable, metrics};
 
 use crate::extent;
 
@@ -16,7 +17,7 @@ fn good() -> Config {
 fn refusal(change: impl FnOnce(&mut Config)) -> String {
     let mut config = good();
     change(&mut config);
-    let error = Optimizer::new(config).err().expect("a refusal").to_string();
+    let error = Optimizer::new(config).expect_err("a refusal").to_string();
     // What is wrong, a colon, what to do about it.
     let (wrong, remedy) = error.rsplit_once(": ").expect("two parts");
     assert!(!wrong.is_empty() && !remedy.is_empty() && !error.contains('\n'), "{error}");
@@ -175,15 +176,15 @@ fn kernels() {
 #[test]
 fn bounds() {
     let other_shape =
-        |given| ConfigError::OtherShape { given: Box::new(given), expected: Box::new([2, 8, 8, 1, 3]) };
+        |given| MeasureError::OtherShape { given: Box::new(given), expected: Box::new([2, 8, 8, 1, 3]) };
     let optimizer = Optimizer::new(good()).unwrap();
-    let error = metrics::bound(optimizer.objective(), &optimizer.table(), 0, 0).unwrap_err();
-    assert_eq!(error.to_string(), "slices is 0: give a value of at least 1");
+    let error = metrics::Bound::measure(&optimizer.table(), optimizer.objective(), 0, 0).unwrap_err();
+    assert_eq!(error.to_string(), "the number of slices is 0: give at least 1");
     let other = SampleTable::white_noise(extent([2, 8, 8, 1]), 2, 0).unwrap();
-    let error = metrics::bound(optimizer.objective(), &other, 0, 64).unwrap_err();
+    let error = metrics::Bound::measure(&other, optimizer.objective(), 0, 64).unwrap_err();
     assert_eq!(error, other_shape([2, 8, 8, 1, 2]));
     // The same number of values in another arrangement of the axes.
     let other = SampleTable::white_noise(extent([1, 8, 16, 1]), 3, 0).unwrap();
-    let error = metrics::bound(optimizer.objective(), &other, 0, 64).unwrap_err();
+    let error = metrics::Bound::measure(&other, optimizer.objective(), 0, 64).unwrap_err();
     assert_eq!(error, other_shape([1, 8, 16, 1, 3]));
 }

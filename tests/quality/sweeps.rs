@@ -2,7 +2,7 @@
 
 use fsot::classes::Classes;
 use fsot::config::{Domain, Work};
-use fsot::metrics::{Bias, Integrands, filtered_error};
+use fsot::metrics::{Bias, FilteredError, Integrands};
 use fsot::{Config, ConfigError, Optimizer, Until};
 
 use crate::{extent, on, ratio};
@@ -20,7 +20,8 @@ fn reaches(shape: [usize; 4], dims: usize, work: Work, [most_filtered, most_boun
         let Classes::Lattice { kernel, .. } = &optimizer.config().terms[0].classes else {
             panic!("no kernel")
         };
-        let filtered = filtered_error(&table, &seen, kernel, &integrands).unwrap().spatio_temporal.mean.mean;
+        let filtered =
+            FilteredError::measure(&table, &seen, &integrands, kernel).unwrap().spatio_temporal.mean.mean;
         let bias = Bias::measure(&table, &seen, &integrands).unwrap().table.mean.mean;
         let (bound, _) = ratio(&optimizer, &table, 4096);
         println!("{shape:?} {dims} {work:?}: filtered {filtered:.3} bound {bound:.3} bias {bias:.2}");

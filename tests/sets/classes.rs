@@ -3,12 +3,12 @@
 use fsot::classes::{Classes, Demand, PrefixLength, PrefixLengths, PrefixOf, Ramp};
 use fsot::config::{LabelSubsets, Role, Term};
 use fsot::targets::Target;
-use fsot::{Config, ConfigError, Extent, Optimizer, Until, metrics};
+use fsot::{Config, ConfigError, Extent, Optimizer, Until};
 
 use crate::optimised;
 
 fn distance(points: &[f64]) -> f64 {
-    metrics::sliced_w2(points, 2, &Target::UniformCube, 128).unwrap()
+    crate::distance(points, 2, &Target::UniformCube, 128)
 }
 
 fn alone(count: usize) -> f64 {
@@ -62,7 +62,7 @@ fn one_and_three_dimensions_work() {
         let points = optimised(Config::classes(&[50, 70], dims, &LabelSubsets::EachAndAll), 1000);
         let noise = fsot::SampleTable::white_noise(Extent::points(120), dims, 3).unwrap();
         let noise: Vec<f64> = noise.values().iter().map(|&value| value.into()).collect();
-        let of = |points: &[f64]| metrics::sliced_w2(points, dims, &Target::UniformCube, 64).unwrap();
+        let of = |points: &[f64]| crate::distance(points, dims, &Target::UniformCube, 64);
         assert!(of(&points) < 0.5 * of(&noise), "{dims}");
         assert!(of(&points[..50 * dims]) < 0.5 * of(&noise[..50 * dims]), "{dims}");
     }

@@ -2,10 +2,11 @@
 
 use fsot::classes::{ClassError, ClassFamily, ClassSamples, Classes};
 use fsot::config::{Role, Term, TermError};
+use fsot::metrics::{Samples, SlicedDistance};
 use fsot::targets::{Measure, Projected, Target, TargetError};
-use fsot::{Config, ConfigError, Extent, Optimizer, metrics};
+use fsot::{Config, ConfigError, Extent, Optimizer};
 
-use crate::optimised;
+use crate::{distance, optimised};
 
 /// Samples whose number has the same remainder; weights fall along the class.
 #[derive(Debug)]
@@ -63,7 +64,7 @@ fn a_custom_family_under_a_custom_target() {
     for tooth in 0..3 {
         let class: Vec<f64> = points.chunks_exact(2).skip(tooth).step_by(3).flatten().copied().collect();
         // A set of 30 on the whole square, alone, reaches 0.026; half of it on a square of half the side.
-        let distance = metrics::sliced_w2(&class, 2, &target, 64).unwrap();
+        let distance = distance(&class, 2, &target, 64);
         assert!(distance < 0.018, "{distance}");
     }
 }
@@ -123,7 +124,8 @@ fn laws_that_are_none_are_refused() {
     ];
     for (index, law) in laws.into_iter().enumerate() {
         let target = Target::custom(Given(law));
-        let error = metrics::sliced_w2(&[0.3, 0.6, 0.1, 0.9], 2, &target, 8).unwrap_err();
+        let points = Samples::points(&[0.3, 0.6, 0.1, 0.9], 2).unwrap();
+        let error = SlicedDistance::measure(points, &[0, 1], &target, 8).unwrap_err();
         assert!(error.to_string().contains("no finite law"), "{index}: {error}");
         let error = Optimizer::new(Config::point_set(9, 2, vec![term(comb(None), target)])).unwrap_err();
         assert!(is_no_law(&error), "{index}: {error:?}");

@@ -1,10 +1,11 @@
 //! Laws of densities and clouds, and sets that follow them.
 
+use fsot::Config;
 use fsot::config::{Domain, Role, Term};
+use fsot::metrics::{DensityMatch, Samples};
 use fsot::targets::{Density, PointCloud, Projected, Target};
-use fsot::{Config, metrics};
 
-use crate::optimised;
+use crate::{distance, optimised};
 
 /// The law along a direction, by brute force: pixels cut into equal masses.
 fn brute_force(density: &Density, direction: [f64; 2]) -> Vec<(f64, f64)> {
@@ -84,17 +85,20 @@ fn points_keep_out_of_what_is_empty() {
     assert!(rows(0.0, 0.3) > 190 && rows(0.0, 0.3) < 210, "{}", rows(0.0, 0.3));
     assert!(rows(0.7, 1.0) > 590 && rows(0.7, 1.0) < 610, "{}", rows(0.7, 1.0));
     // Four of the ten empty rows are beyond the blur, which ends after three deviations.
-    let found = metrics::density_match(&points, &density, 0.0125).unwrap();
+    let measure = |points: &[f64]| {
+        DensityMatch::measure(Samples::points(points, 2).unwrap(), [0, 1], &density, 0.0125).unwrap()
+    };
+    let found = measure(&points);
     assert!(found.correlation > 0.97 && found.strays == 0, "{found:?}");
     let astray: Vec<f64> = points.iter().copied().chain([0.5, 0.5]).collect();
-    assert_eq!(metrics::density_match(&astray, &density, 0.0125).unwrap().strays, 1);
+    assert_eq!(measure(&astray).strays, 1);
 }
 
 #[test]
 fn pictures_of_one_pixel_or_one_row_are_followed() {
     let one = optimised(Config::stippling(64, Density::new(1, 1, vec![0.3]).unwrap()), 2000);
     // A set on the square, alone, reaches 0.018.
-    assert!(metrics::sliced_w2(&one, 2, &Target::UniformCube, 64).unwrap() < 0.03);
+    assert!(distance(&one, 2, &Target::UniformCube, 64) < 0.03);
     for (size, along) in [([5, 1], 0), ([1, 5], 1)] {
         let density = Density::new(size[0], size[1], vec![1.0, 0.0, 3.0, 0.0, 0.0]).unwrap();
         let points = optimised(Config::stippling(400, density), 2000);
@@ -110,17 +114,20 @@ fn pictures_of_one_pixel_or_one_row_are_followed() {
 fn what_cannot_be_matched_is_named() {
     let density = Density::new(2, 2, vec![1.0; 4]).unwrap();
     let says = |points: &[f64], sigma, text: &str| {
-        let error = metrics::density_match(points, &density, sigma).unwrap_err().to_string();
+        let found = Samples::points(points, 2)
+            .and_then(|points| DensityMatch::measure(points, [0, 1], &density, sigma));
+        let error = found.unwrap_err().to_string();
         assert!(error.contains(text), "{error}");
     };
     says(&[], 0.1, "points is 0");
-    says(&[0.5; 3], 0.1, "holds 3");
-    says(&[0.5, 1.0], 0.1, "1 is 1");
+    says(&[0.5; 3], 0.1, "3 values");
+    says(&[0.5, 1.0], 0.1, "point 0 has 1 in dimension 1");
     for sigma in [0.0, 1.5, f64::NAN] {
         says(&[0.5, 0.5], sigma, "sigma is");
     }
     // All in one corner of an even picture: they do not resemble it.
-    let corner = metrics::density_match(&[0.1; 20], &density, 0.1).unwrap();
+    let corner = Samples::points(&[0.1; 20], 2).unwrap();
+    let corner = DensityMatch::measure(corner, [0, 1], &density, 0.1).unwrap();
     assert!(corner.correlation < 0.5, "{corner:?}");
 }
 
@@ -159,7 +166,7 @@ fn a_set_can_thin_out_a_cloud() {
     let points = optimised(Config::point_set(100, 2, vec![term]), 4000);
     let off: f64 = points.chunks_exact(2).map(|p| ((p[0] - 0.5).hypot(p[1] - 0.5) - 0.4).abs()).sum();
     assert!(off / 100.0 < 0.02, "{}", off / 100.0);
-    assert!(metrics::sliced_w2(&points, 2, &target, 64).unwrap() < 0.01);
+    assert!(distance(&points, 2, &target, 64) < 0.01);
 }
 
 #[test]

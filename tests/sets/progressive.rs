@@ -2,11 +2,11 @@
 
 use fsot::classes::{Classes, PrefixLength, PrefixLengths, PrefixOf};
 use fsot::config::{Role, Term};
-use fsot::metrics::{self, Integrands};
+use fsot::metrics::{Integrands, Samples, SetError};
 use fsot::targets::Target;
 use fsot::{Config, Extent};
 
-use crate::optimised;
+use crate::{distance, optimised};
 
 /// Measured after 4,000 slices: below 0.1 at 64 points, below 0.06 at 256.
 #[test]
@@ -14,7 +14,8 @@ fn every_power_of_two_integrates_well() {
     let points = optimised(Config::progressive(256, 2, PrefixLengths::PowersOfTwo), 4000);
     let integrands = Integrands::random(2, 64, 0).unwrap();
     for (length, limit) in [(16, 0.35), (64, 0.15), (256, 0.08)] {
-        let ratio = metrics::set_error(&points[..2 * length], &integrands).unwrap().mean.mean;
+        let prefix = Samples::points(&points, 2).unwrap().select(..length).unwrap();
+        let ratio = SetError::measure(prefix, &[0, 1], &integrands).unwrap().ratios.mean.mean;
         assert!(ratio < limit, "{length}: {ratio}");
     }
 }
@@ -25,7 +26,7 @@ fn given_and_all_lengths_can_be_had() {
         PrefixLength { length: 24, weight: 1.0 },
         PrefixLength { length: 100, weight: 0.5 },
     ]);
-    let distance = |points: &[f64]| metrics::sliced_w2(points, 2, &Target::UniformCube, 64).unwrap();
+    let distance = |points: &[f64]| distance(points, 2, &Target::UniformCube, 64);
     for lengths in [given, PrefixLengths::Every] {
         let points = optimised(Config::progressive(100, 2, lengths), 1000);
         // White noise: sqrt((1/12) / n) in each direction, about.
@@ -48,7 +49,7 @@ fn prefixes_of_pixels_join_the_lattice() {
     let prefixed = optimised(config, 64);
     let distance = |points: &[f64]| {
         let firsts = points.chunks_exact(16).map(|pixel| &pixel[..8]);
-        let of = |points| metrics::sliced_w2(points, 2, &Target::UniformCube, 16).unwrap();
+        let of = |points| distance(points, 2, &Target::UniformCube, 16);
         firsts.map(of).sum::<f64>() / 256.0
     };
     assert!(distance(&prefixed) < 0.85 * distance(&plain), "{} {}", distance(&prefixed), distance(&plain));

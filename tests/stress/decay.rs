@@ -24,7 +24,7 @@ fn the_bound_falls_along_a_run() {
             let mut optimizer = Optimizer::new(config).unwrap();
             let steps = 40 * CHECKPOINTS;
             let measure = |optimizer: &Optimizer| {
-                metrics::bound(optimizer.objective(), &optimizer.table(), 7, 1 << 13).unwrap().total
+                metrics::Bound::measure(&optimizer.table(), optimizer.objective(), 7, 1 << 13).unwrap().total
             };
             let mut last = measure(&optimizer);
             let (mut trace, mut greatest_rise) =

@@ -58,7 +58,7 @@ fn every_start_ends_where_white_noise_does() {
                         .unwrap();
                     let table = optimizer.table();
                     assert_inside(table.values(), &context);
-                    let bound = metrics::bound(optimizer.objective(), &table, 0, 1 << 12).unwrap();
+                    let bound = metrics::Bound::measure(&table, optimizer.objective(), 0, 1 << 12).unwrap();
                     let ratio = bound.total.ratio_to_white_noise;
                     (least, greatest) = (least.min(ratio), greatest.max(ratio));
                     if of_white.len() <= run {

@@ -82,7 +82,7 @@ fn sixteen_dimensions_improve() {
         config.slicing.axis_share = axis_share;
         let mut optimizer = fsot::Optimizer::new(config).unwrap();
         let bound = |optimizer: &fsot::Optimizer| {
-            metrics::bound(optimizer.objective(), &optimizer.table(), 0, 1 << 11).unwrap()
+            metrics::Bound::measure(&optimizer.table(), optimizer.objective(), 0, 1 << 11).unwrap()
         };
         let before = bound(&optimizer).total;
         optimizer.run(Until::SlicesPerClass(256)).unwrap();

@@ -27,7 +27,7 @@ fn one_tap() {
             optimizer.run(Until::SlicesPerClass(64)).unwrap();
             let table = optimizer.table();
             assert_inside(table.values(), format_args!("{spatial:?} {form:?}"));
-            let bound = metrics::bound(optimizer.objective(), &table, 0, 4096).unwrap();
+            let bound = metrics::Bound::measure(&table, optimizer.objective(), 0, 4096).unwrap();
             println!(
                 "one tap, {form:?}: kernel's bound {:.3} of white noise, whole table's {:.3}",
                 bound.terms[0].ratio_to_white_noise, bound.terms[1].ratio_to_white_noise
@@ -55,7 +55,7 @@ fn four_thousand_taps() {
             assert_eq!(taps.len(), 4096);
             let least = taps[4095].weight;
             let bound = |optimizer: &Optimizer| {
-                metrics::bound(optimizer.objective(), &optimizer.table(), 0, 128).unwrap().total
+                metrics::Bound::measure(&optimizer.table(), optimizer.objective(), 0, 128).unwrap().total
             };
             let before = bound(&optimizer);
             for step in 0..12 {

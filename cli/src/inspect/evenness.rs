@@ -1,6 +1,6 @@
 //! How evenly all samples of a table fill a square, or an interval.
 
-use fsot::{ConfigError, SampleTable, metrics::Histogram};
+use fsot::{SampleTable, metrics::Histogram, metrics::MeasureError};
 
 /// Counts of samples in equal cells.
 pub struct Evenness {
@@ -18,13 +18,13 @@ pub struct Evenness {
 
 impl Evenness {
     /// Counts the samples of one or two dimensions in as many cells as keep 8 samples each, at most 32 per side.
-    pub fn new(table: &SampleTable, dims: &[usize]) -> Result<Self, ConfigError> {
+    pub fn new(table: &SampleTable, dims: &[usize]) -> Result<Self, MeasureError> {
         let samples = table.extent().samples();
         let cells = |per_side: usize| per_side.pow(dims.len() as u32);
         let sides = [32, 16, 8, 4, 2];
         let per_side = sides.into_iter().find(|&side| samples >= 8 * cells(side)).unwrap_or(1);
         if let &[a, b] = dims {
-            let histogram = Histogram::new(table, [a, b], per_side)?;
+            let histogram = Histogram::measure(table, [a, b], per_side)?;
             let mean = histogram.mean();
             return Ok(Self {
                 per_side,

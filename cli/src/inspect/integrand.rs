@@ -1,7 +1,7 @@
 //! The error of one integrand, as a picture before and after the filter.
 
 use fsot::kernel::Tap;
-use fsot::metrics::{Family, Integrand, Integrands, error_image};
+use fsot::metrics::{ErrorImage, Family, Integrand, Integrands};
 use fsot::{Extent, Kernel, SampleTable, Site};
 use rayon::prelude::*;
 
@@ -32,8 +32,8 @@ impl ErrorPictures {
         kernel: &Kernel,
     ) -> Result<Self, Failure> {
         let extent = table.extent();
-        let Extent { frames, height, width, spp } = extent;
-        let errors = error_image(table, dims, integrand)?;
+        let Extent { frames, height, width, .. } = extent;
+        let ErrorImage { errors, white_variance } = ErrorImage::measure(table, dims, integrand)?;
         let taps = kernel.taps(&extent)?;
         let affordable = ((MOST_WORK / taps.len()) as f64).sqrt().max(1.0) as usize;
         let [rows, columns] = [height, width].map(|side| side.min(LARGEST_SIDE).min(affordable));
@@ -49,7 +49,7 @@ impl ErrorPictures {
             taps.iter().map(of_tap).sum::<f64>()
         };
         let filtered = sites.collect::<Vec<_>>().into_par_iter().map(filtered_at).collect();
-        let single = (integrand.variance() / spp as f64).sqrt();
+        let single = white_variance.sqrt();
         let shrunk = taps.iter().map(|tap| (tap.weight / sum).powi(2)).sum::<f64>().sqrt();
         let cut = rows < height || columns < width;
         Ok(Self { columns, cut, raw, filtered, white: [single, single * shrunk] })
@@ -59,7 +59,7 @@ impl ErrorPictures {
 /// A half-plane that covers about a third of the square: an ordinary edge, of no special symmetry.
 pub fn ordinary_half_plane(dims: usize, seed: u64) -> Result<Integrand, Failure> {
     let integrands = Integrands::random(dims, 64, seed)?;
-    let edges = integrands.family(Family::HalfSpace).iter();
+    let edges = integrands.family(Family::HALF_SPACE).unwrap_or_default().iter();
     let from_a_third = |edge: &Integrand| (edge.integral() - 0.35).abs();
     let ordinary = edges.min_by(|a, b| from_a_third(a).total_cmp(&from_a_third(b)));
     Ok(ordinary.ok_or("there is no half-plane to show")?.clone())

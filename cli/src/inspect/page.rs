@@ -27,7 +27,7 @@ pub fn draw(inspection: &Inspection, shown: &Shown) -> Result<GrayImage, Failure
     // Another seed than a table's own, which may have started from white noise of this very seed.
     let white = SampleTable::white_noise(extent, table.dims(), seed ^ 0x0077_6869_7465)?;
     let dims = shown.dims.as_slice();
-    let of_white = Spectra::of_table(&white, dims, &Integrands::random(dims.len(), *integrands, *seed)?)?;
+    let of_white = Spectra::measure(&white, dims, &Integrands::random(dims.len(), *integrands, *seed)?)?;
 
     let error = shown.errors.spatio_temporal.mean.mean;
     let mut rows = vec![

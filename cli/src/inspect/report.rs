@@ -5,8 +5,7 @@ use std::io::Write;
 use fsot::config::DimensionGroup;
 use fsot::files::{Metadata, TableError};
 use fsot::kernel::TemporalKernel;
-use fsot::metrics::{Bias, Family, FilteredError, Integrands, Ratios, Spectra};
-use fsot::metrics::{bound, filtered_error, l2_star_discrepancy};
+use fsot::metrics::{Bias, Bound, Discrepancy, Family, FilteredError, Integrands, Ratios, Spectra};
 use fsot::{Config, Extent, Objective, SampleTable};
 
 use super::Inspection;
@@ -122,10 +121,10 @@ fn measure_group(out: &mut dyn Write, inspection: &Inspection, dims: Vec<usize>)
         all => format!("all {} dimensions", all.len()),
     };
     write!(out, "\n{title:22}")?;
-    Family::ALL.iter().try_for_each(|family| write!(out, "{:>11}", family.name()))?;
+    integrands.families().iter().map(Family::name).try_for_each(|name| write!(out, "{name:>11}"))?;
     writeln!(out, "{:>11}", "mean")?;
 
-    let errors = filtered_error(table, &dims, kernel, &integrands)?;
+    let errors = FilteredError::measure(table, &dims, &integrands, kernel)?;
     write_ratios(out, "error, not filtered", &errors.unfiltered)?;
     write_ratios(out, "filtered in space", &errors.spatial)?;
     if extent.frames > 1 {
@@ -145,11 +144,12 @@ fn measure_group(out: &mut dyn Write, inspection: &Inspection, dims: Vec<usize>)
     let per_frame = (extent.samples() / extent.frames) as u64;
     let pairs = per_frame.saturating_mul(per_frame).saturating_mul((extent.frames * dims.len()) as u64);
     if pairs <= MOST_PAIRS {
-        writeln!(out, "  squared L2 discrepancy of a frame {:.4}", l2_star_discrepancy(table, &dims)?)?;
+        let discrepancy = Discrepancy::measure(table, &dims)?.ratio_to_white_noise;
+        writeln!(out, "  squared L2 discrepancy of a frame {discrepancy:.4}")?;
     } else {
         writeln!(out, "  squared L2 discrepancy of a frame: left out, {per_frame} samples take too long")?;
     }
-    let spectra = Spectra::of_table(table, &dims, &integrands)?;
+    let spectra = Spectra::measure(table, &dims, &integrands)?;
     let low = spectra.low_frequency_share(LOW);
     if low.is_finite() {
         writeln!(out, "  power at low frequencies (to {LOW} cycles per pixel) {low:.4}")?;
@@ -161,7 +161,7 @@ fn measure_group(out: &mut dyn Write, inspection: &Inspection, dims: Vec<usize>)
 
 fn write_ratios(out: &mut dyn Write, label: &str, ratios: &Ratios) -> Result<(), Failure> {
     write!(out, "  {label:20}")?;
-    Family::ALL.iter().try_for_each(|&family| write!(out, "{:11.4}", ratios.family(family).mean))?;
+    ratios.families.iter().try_for_each(|family| write!(out, "{:11.4}", family.ratio.mean))?;
     let mean = ratios.mean;
     if mean.standard_error.is_nan() {
         writeln!(out, "{:11.4}", mean.mean)?;
@@ -201,7 +201,7 @@ fn write_bound(
     let Inspection { table, kernel, bound_slices, seed, .. } = inspection;
     let config = Config::new(table.extent(), table.dims()).with_groups(groups).with_kernel(kernel.clone());
     let objective = Objective::new(&config)?;
-    let total = bound(&objective, table, *seed, *bound_slices)?.total;
+    let total = Bound::measure(table, &objective, *seed, *bound_slices)?.total;
     writeln!(
         out,
         "\nbound {:.5} ± {:.5}, {:.4} ± {:.4} of white noise",

@@ -8,8 +8,9 @@ use std::path::PathBuf;
 use crate::Failure;
 use crate::draw::page::Page;
 use clap::Args;
+use fsot::metrics::{DensityMatch, Samples};
 use fsot::targets::Inks;
-use fsot::{Config, Optimizer, Until, metrics};
+use fsot::{Config, Optimizer, Until};
 
 /// Makes points in cyan, magenta, yellow and black that resemble a picture, and draws them.
 #[derive(Args)]
@@ -61,9 +62,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         labelled.extend(these.chunks_exact(2).map(|dot| (dot, INKS[ink])));
         let Some(density) = inks.density(ink).filter(|_| count > 0) else { continue };
         size = density.size();
-        let points: Vec<f64> = these.iter().map(|&value| value.into()).collect();
         let shape = size[0].min(size[1]) as f64 / size[0].max(size[1]) as f64;
-        let found = metrics::density_match(&points, &density, 2.0 * (shape / count as f64).sqrt())?;
+        let sigma = 2.0 * (shape / count as f64).sqrt();
+        let found = DensityMatch::measure(Samples::points(these, 2)?, [0, 1], &density, sigma)?;
         println!(
             "{}: {count} points, correlation {:.4}, strays {}",
             NAMES[ink], found.correlation, found.strays

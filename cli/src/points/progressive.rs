@@ -8,8 +8,8 @@ use crate::Failure;
 use crate::draw::page::Page;
 use clap::{Args, ValueEnum};
 use fsot::classes::PrefixLengths;
-use fsot::metrics::{self, Integrands};
-use fsot::{Config, ConfigError, Optimizer, Until};
+use fsot::metrics::{Integrands, MeasureError, Samples, SetError};
+use fsot::{Config, Optimizer, Until};
 
 /// Makes progressive sequences, compares their prefixes with Owen-scrambled Sobol' points, and draws some of them.
 #[derive(Args)]
@@ -67,11 +67,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         (0..arguments.count as u32).flat_map(point).collect::<Vec<f32>>()
     };
     let scrambled: Vec<Vec<f32>> = (0..10).map(sobol).collect();
-    let mean = |sets: &[Vec<f32>], length: usize| -> Result<f64, ConfigError> {
+    let mean = |sets: &[Vec<f32>], length: usize| -> Result<f64, MeasureError> {
         let mut sum = 0.0;
         for set in sets {
-            let points: Vec<f64> = set[..2 * length].iter().map(|&value| value.into()).collect();
-            sum += metrics::set_error(&points, &integrands)?.mean.mean;
+            let prefix = Samples::points(set, 2)?.select(..length)?;
+            sum += SetError::measure(prefix, &[0, 1], &integrands)?.ratios.mean.mean;
         }
         Ok(sum / sets.len() as f64)
     };

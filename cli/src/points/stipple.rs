@@ -7,8 +7,9 @@ use std::path::PathBuf;
 use crate::Failure;
 use crate::draw::page::Page;
 use clap::Args;
+use fsot::metrics::DensityMatch;
 use fsot::targets::{Density, Tone};
-use fsot::{Config, Optimizer, Until, metrics};
+use fsot::{Config, Optimizer, Until};
 
 /// Makes points that resemble a picture, measures how well they do, and draws them.
 #[derive(Args)]
@@ -49,12 +50,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     println!("planned in {:.2} s, optimised in {:.2} s", planned.as_secs_f64(), report.elapsed.as_secs_f64());
 
     let table = optimizer.into_table();
-    let points: Vec<f64> = table.values().iter().map(|&value| value.into()).collect();
     // Two distances between neighbours, if all of the picture were equally dark.
     let [width, height] = density.size();
     let shape = width.min(height) as f64 / width.max(height) as f64;
     let sigma = 2.0 * (shape / arguments.count as f64).sqrt();
-    let found = metrics::density_match(&points, &density, sigma)?;
+    let found = DensityMatch::measure(&table, [0, 1], &density, sigma)?;
     println!("correlation {:.4}, strays {}, blurred by {sigma:.4}", found.correlation, found.strays);
     assert!(arguments.count < 1000 || found.correlation > 0.9, "the points don't resemble the picture");
 

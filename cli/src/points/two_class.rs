@@ -11,8 +11,9 @@ use crate::draw::page::Page;
 use clap::Args;
 use fsot::classes::Classes;
 use fsot::config::LabelSubsets;
+use fsot::metrics::{MeasureError, Samples, SlicedDistance};
 use fsot::targets::Target;
-use fsot::{Config, ConfigError, Optimizer, Until, metrics};
+use fsot::{Config, ConfigError, Optimizer, Until};
 
 /// Makes a point set of several classes, measures it, and draws each class beside the union.
 #[derive(Args)]
@@ -62,21 +63,20 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     // How far each class is from uniform, and how far a set of its size could be.
     let mut alone = BTreeMap::new();
     for set in subsets.iter().filter(|_| !arguments.no_comparison) {
-        let class: Vec<f64> = (0..labels.len())
+        let class: Vec<f32> = (0..labels.len())
             .filter(|&i| set.labels.contains(&labels[i]))
-            .flat_map(|i| points[2 * i..2 * i + 2].iter().map(|&value| value.into()))
+            .flat_map(|i| points[2 * i..2 * i + 2].iter().copied())
             .collect();
         let size = class.len() / 2;
         if size == 0 {
             continue;
         }
-        let distance = metrics::sliced_w2(&class, 2, &Target::UniformCube, 256)?;
+        let distance = distance_to_uniform(&class)?;
         let best = match alone.get(&size) {
             Some(&best) => best,
             None => {
                 let single = Config::classes(&[size], 2, &LabelSubsets::Every).with_seed(seed + 1);
-                let points: Vec<f64> = optimised(single, *slices)?.0.into_iter().map(f64::from).collect();
-                let best = metrics::sliced_w2(&points, 2, &Target::UniformCube, 256)?;
+                let best = distance_to_uniform(&optimised(single, *slices)?.0)?;
                 alone.insert(size, best);
                 best
             }
@@ -98,6 +98,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     page.image.save(&arguments.out)?;
     println!("{}", arguments.out.display());
     Ok(())
+}
+
+/// Sliced distance of points in the plane.
+fn distance_to_uniform(points: &[f32]) -> Result<f64, MeasureError> {
+    let points = Samples::points(points, 2)?;
+    Ok(SlicedDistance::measure(points, &[0, 1], &Target::UniformCube, 256)?.w2)
 }
 
 fn optimised(config: Config, slices: u64) -> Result<(Vec<f32>, Duration), ConfigError> {

@@ -281,7 +281,10 @@ mod tests {
             Denoiser { normal_power: -1.0, ..Denoiser::default() },
             Denoiser { plane_share: 0.0, ..Denoiser::default() },
         ] {
-            assert!(matches!(bad.apply(&film, &guides), Err(RenderError::Extent(_) | RenderError::Range(_))), "{bad:?}");
+            assert!(
+                matches!(bad.apply(&film, &guides), Err(RenderError::Extent(_) | RenderError::Range(_))),
+                "{bad:?}"
+            );
         }
     }
 }

@@ -1,7 +1,7 @@
 //! What several tests need.
 
 use fsot::kernel::{SpatialKernel, TemporalKernel};
-use fsot::metrics::{Integrands, Spectra, filtered_error};
+use fsot::metrics::{FilteredError, Integrands, Spectra};
 use fsot::{Extent, Kernel, SampleTable, Site};
 
 use fsot_lab::samplers::Sampler;
@@ -18,7 +18,7 @@ pub fn all(table: &SampleTable) -> Vec<usize> {
 /// Share of the power of white noise below 0.1 cycles per pixel.
 pub fn low(table: &SampleTable) -> f64 {
     let integrands = Integrands::random(table.dims(), 16, 11).unwrap();
-    Spectra::of_table(table, &all(table), &integrands).unwrap().low_frequency_share(0.1)
+    Spectra::measure(table, &all(table), &integrands).unwrap().low_frequency_share(0.1)
 }
 
 pub fn gaussian() -> Kernel {
@@ -28,7 +28,7 @@ pub fn gaussian() -> Kernel {
 /// Squared error before the filter, after it in space, after all of it; 1 for white noise.
 pub fn errors(table: &SampleTable, kernel: &Kernel, per_family: usize) -> [f64; 3] {
     let integrands = Integrands::random(table.dims(), per_family, 0).unwrap();
-    let found = filtered_error(table, &all(table), kernel, &integrands).unwrap();
+    let found = FilteredError::measure(table, &all(table), &integrands, kernel).unwrap();
     [found.unfiltered, found.spatial, found.spatio_temporal].map(|ratios| ratios.mean.mean)
 }
 

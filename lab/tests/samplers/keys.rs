@@ -1,6 +1,7 @@
 //! Scrambling keys arranged by the errors that they cause (Heitz et al. 2019).
 
 use fsot::SampleTable;
+use fsot::metrics::{FilteredError, Integrands};
 use fsot_lab::samplers::{OwenSobol, ScramblingKeys};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
@@ -54,8 +55,9 @@ fn many_dimensions_fall_back_to_uncorrelated_errors() {
     (keys.cooling.sweeps, keys.integrands) = (50, 32);
     let table = keys.table().unwrap();
     let pair = |table: &SampleTable, dims: &[usize]| {
-        let integrands = fsot::metrics::Integrands::random(2, 16, 0).unwrap();
-        fsot::metrics::filtered_error(table, dims, &gaussian(), &integrands).unwrap().spatial.mean.mean
+        let integrands = Integrands::random(2, 16, 0).unwrap();
+        let found = FilteredError::measure(table, dims, &integrands, &gaussian()).unwrap();
+        found.spatial.mean.mean
     };
     for dims in [[0, 1], [10, 11]] {
         let white: Vec<f64> = (0..8).map(|seed| pair(&shuffled(&table, seed), &dims)).collect();

@@ -52,7 +52,7 @@ fn a_lattice_shifted_by_a_mask_is_dithered() {
 /// Power of the error along time at a pixel, in the lower and upper half of the frequencies, white noise 1.
 fn halves_in_time(table: &SampleTable) -> [f64; 2] {
     let integrands = Integrands::random(table.dims(), 16, 5).unwrap();
-    let spectrum = Spectra::of_table(table, &all(table), &integrands).unwrap().xt;
+    let spectrum = Spectra::measure(table, &all(table), &integrands).unwrap().xt;
     let frames = table.extent().frames;
     let mut sums = [(0.0, 0.0); 2];
     for ((row, _), power) in spectrum.indexed_iter() {

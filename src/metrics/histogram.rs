@@ -1,10 +1,19 @@
 //! How evenly the samples of a table fill a square.
 
-use super::error_image::check_group;
-use crate::error::ConfigError;
-use crate::table::SampleTable;
+use super::coordinates::Coordinates;
+use super::error::MeasureError;
+use super::samples::Samples;
+use crate::error::RangeError;
 
 /// Samples counted in `k × k` equal cells of the square of two dimensions, over all pixels and frames.
+///
+/// ```
+/// use fsot::metrics::{Histogram, Samples};
+///
+/// let points = Samples::points(&[0.1, 0.1, 0.9, 0.1, 0.6, 0.2], 2)?;
+/// assert_eq!(Histogram::measure(points, [0, 1], 2)?.counts, [1, 2, 0, 0]);
+/// # Ok::<(), fsot::metrics::MeasureError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Histogram {
     /// Samples per cell, row by row: cell `(i, j)` at `j · k + i`, `i` along the first dimension.
@@ -14,27 +23,26 @@ pub struct Histogram {
 }
 
 impl Histogram {
-    /// Counts the samples of dimensions `a` and `b`. O(samples).
+    /// Counts the samples of two dimensions in `1..=4096` cells per side. O(samples).
     ///
     /// Expect at least 5 samples per cell for [`Histogram::spread`] to mean much.
     ///
     /// # Errors
     /// Equal or missing dimensions; `cells_per_side` is 0 or above 4096.
-    pub fn new(table: &SampleTable, [a, b]: [usize; 2], cells_per_side: usize) -> Result<Self, ConfigError> {
-        check_group(&[a, b], table.dims())?;
+    pub fn measure<'a>(
+        samples: impl Into<Samples<'a>>,
+        dims: [usize; 2],
+        cells_per_side: usize,
+    ) -> Result<Self, MeasureError> {
+        let points = Coordinates::gather(samples, &dims)?;
         if !(1..=4096).contains(&cells_per_side) {
-            return Err(crate::error::RangeError::new(
-                "cells per side",
-                cells_per_side as f64,
-                "from 1 to 4096",
-            )
-            .into());
+            return Err(RangeError::new("cells per side", cells_per_side as f64, "from 1 to 4096").into());
         }
         let mut counts = vec![0; cells_per_side * cells_per_side];
-        // A value below 1 times k can round up to k in f32, not in f64.
-        let cell = |value: f32| (f64::from(value) * cells_per_side as f64) as usize;
-        for sample in table.values().chunks_exact(table.dims()) {
-            counts[cell(sample[b]) * cells_per_side + cell(sample[a])] += 1;
+        // The largest f64 below 1, times k, rounds up to k.
+        let cell = |value: f64| ((value * cells_per_side as f64) as usize).min(cells_per_side - 1);
+        for point in points.points() {
+            counts[cell(point[1]) * cells_per_side + cell(point[0])] += 1;
         }
         Ok(Self { counts, cells_per_side })
     }
@@ -44,8 +52,8 @@ impl Histogram {
         self.counts.iter().sum::<u64>() as f64 / self.counts.len() as f64
     }
 
-    /// Pearson's `χ² / (cells − 1)`: 1 for random samples in the mean (standard deviation `√(2 / (cells − 1))`),
-    /// 0 for equal counts. NaN for a single cell.
+    /// Pearson's `χ² / (cells − 1)`: 1 for random samples in the mean (standard deviation `√(2 / (cells −
+    /// 1))`), 0 for equal counts. NaN for a single cell.
     pub fn spread(&self) -> f64 {
         let mean = self.mean();
         let squares: f64 = self.counts.iter().map(|&count| (count as f64 - mean).powi(2)).sum();
@@ -58,8 +66,8 @@ impl Histogram {
         [relative(self.counts.iter().min()), relative(self.counts.iter().max())]
     }
 
-    /// Counts of the four corner cells relative to the mean, at `(low, low)`, `(high, low)`, `(low, high)` and
-    /// `(high, high)` of the first and second dimension. Far below 1 means samples pulled to the centre.
+    /// Counts of the four corner cells relative to the mean, at `(low, low)`, `(high, low)`, `(low, high)`
+    /// and `(high, high)` of the first and second dimension. Far below 1 means samples pulled to the centre.
     pub fn corners(&self) -> [f64; 4] {
         let last = self.cells_per_side - 1;
         let at = |i: usize, j: usize| self.counts[j * self.cells_per_side + i] as f64 / self.mean();
@@ -70,7 +78,9 @@ impl Histogram {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::GroupError;
     use crate::metrics::Estimate;
+    use crate::table::SampleTable;
     use crate::table::domain::BELOW_ONE;
     use crate::table::extent::Extent;
 
@@ -82,7 +92,7 @@ mod tests {
             0.4, 0.5, 0.9, /**/ BELOW_ONE, 0.5, BELOW_ONE, /**/ 0.5, 0.5, 0.5,
         ];
         let table = SampleTable::new(extent, 3, values).unwrap();
-        let histogram = Histogram::new(&table, [0, 2], 3).unwrap();
+        let histogram = Histogram::measure(&table, [0, 2], 3).unwrap();
         assert_eq!(histogram.counts, [1, 0, 2, 0, 1, 0, 0, 1, 1]);
         assert_eq!(histogram.corners(), [1.5, 3.0, 0.0, 1.5]);
         assert_eq!(histogram.extremes(), [0.0, 3.0]);
@@ -97,7 +107,7 @@ mod tests {
         let spreads: Vec<f64> = (0..200)
             .map(|seed| {
                 let table = SampleTable::white_noise(extent, 2, seed).unwrap();
-                Histogram::new(&table, [1, 0], 8).unwrap().spread()
+                Histogram::measure(&table, [1, 0], 8).unwrap().spread()
             })
             .collect();
         let over = Estimate::of(spreads.into_iter());
@@ -108,8 +118,14 @@ mod tests {
     fn bad_questions_are_named() {
         let extent = Extent { frames: 1, height: 1, width: 1, spp: 1 };
         let table = SampleTable::white_noise(extent, 2, 0).unwrap();
-        assert!(matches!(Histogram::new(&table, [0, 0], 4), Err(ConfigError::NoTerms)));
-        assert!(matches!(Histogram::new(&table, [0, 2], 4), Err(ConfigError::NoTerms)));
-        assert!(matches!(Histogram::new(&table, [0, 1], 0), Err(ConfigError::Range(_))));
+        assert!(matches!(
+            Histogram::measure(&table, [0, 0], 4),
+            Err(MeasureError::Group(GroupError::Repeated { .. }))
+        ));
+        assert!(matches!(
+            Histogram::measure(&table, [0, 2], 4),
+            Err(MeasureError::Group(GroupError::NoSuchDimension { .. }))
+        ));
+        assert!(matches!(Histogram::measure(&table, [0, 1], 0), Err(MeasureError::Range(RangeError { .. }))));
     }
 }

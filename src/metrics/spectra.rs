@@ -4,11 +4,11 @@ use ndarray::{Array2, ArrayView3};
 use rayon::prelude::*;
 use rustfft::num_complex::Complex64;
 
-use super::error_image::Points;
-use super::families::Integrands;
+use super::coordinates::Coordinates;
+use super::error::MeasureError;
 use super::fft::{Scratch, Transform};
-use crate::error::ConfigError;
-use crate::table::SampleTable;
+use super::integrands::Integrands;
+use super::samples::Samples;
 
 /// Power spectra of an error image, normalised so that white noise is 1 at every frequency.
 ///
@@ -16,8 +16,19 @@ use crate::table::SampleTable;
 /// (integer division), zero frequency in the middle. Frequencies are in cycles per picture; cycles per pixel
 /// (or frame) are `k / len`, up to 0.5.
 ///
-/// The zero frequency is kept in the arrays: the mean of the error is not subtracted, so the central value of `xy`
-/// is the bias of a frame as ratio to random. Radial average and low-frequency share leave it out.
+/// The zero frequency is kept in the arrays: the mean of the error is not subtracted, so the central value of
+/// `xy` is the bias of a frame as ratio to random. Radial average and low-frequency share leave it out.
+///
+/// ```
+/// use fsot::metrics::{Integrands, Spectra};
+/// use fsot::{Extent, SampleTable};
+///
+/// let extent = Extent { frames: 1, height: 16, width: 16, spp: 1 };
+/// let table = SampleTable::white_noise(extent, 2, 0)?;
+/// let spectra = Spectra::measure(&table, &[0, 1], &Integrands::random(2, 16, 0)?)?;
+/// assert!((0.5..1.5).contains(&spectra.low_frequency_share(0.25)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectra {
     /// Power over `[ky, kx]` (height × width), averaged over frames.
@@ -27,6 +38,18 @@ pub struct Spectra {
 }
 
 /// A ring of frequencies of the xy spectrum.
+///
+/// ```
+/// use fsot::metrics::Spectra;
+///
+/// // A checkerboard has a single frequency, half a cycle per pixel along both axes.
+/// let sign = |(_, y, x): (usize, usize, usize)| if (x + y) % 2 == 0 { 0.5 } else { -0.5 };
+/// let checkerboard = ndarray::Array3::from_shape_fn((1, 8, 8), sign);
+/// let rings = Spectra::of_image(checkerboard.view(), 0.25).radial();
+/// let last = rings.last().unwrap();
+/// assert_eq!((last.frequency, last.count), (0.5_f64.sqrt(), 1));
+/// assert!(last.power > 63.9);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RadialBin {
     /// Mean radius of the ring's frequencies, in cycles per pixel.
@@ -41,8 +64,8 @@ pub struct RadialBin {
 const PARTS: usize = 8;
 
 impl Spectra {
-    /// Spectra of one error image `[frame, y, x]` (of a renderer, say) whose pixels have this variance in white
-    /// noise; pass the image's own mean square to look at the shape alone.
+    /// Spectra of one error image `[frame, y, x]` (of a renderer, say) whose pixels have this variance in
+    /// white noise; pass the image's own mean square to look at the shape alone.
     ///
     /// O(sites log sites).
     ///
@@ -58,19 +81,20 @@ impl Spectra {
         sums.finish(1)
     }
 
-    /// Spectra of a table's error in the dimension group `dims`, averaged over all integrands, each relative to
-    /// its own white noise.
+    /// Spectra of the samples' error in the dimension group `dims`, averaged over all integrands, each
+    /// relative to its own white noise.
     ///
     /// O(sites log sites) per integrand; parallel, and independent of the number of threads.
     ///
     /// # Errors
-    /// A bad dimension group (as in [`super::error_image()`]).
-    pub fn of_table(
-        table: &SampleTable,
+    /// A dimension group that is empty, repeats a dimension, exceeds those of the samples, or has another
+    /// length than integrands have coordinates.
+    pub fn measure<'a>(
+        samples: impl Into<Samples<'a>>,
         dims: &[usize],
         integrands: &Integrands,
-    ) -> Result<Self, ConfigError> {
-        let points = Points::new(table, dims, integrands.dims())?;
+    ) -> Result<Self, MeasureError> {
+        let points = Coordinates::gather(samples, dims)?.fitting("an integrand", integrands.dims())?;
         let extent = points.extent;
         let shape = [extent.frames, extent.height, extent.width];
         let all: Vec<_> = integrands.iter().collect();
@@ -118,10 +142,11 @@ impl Spectra {
         bins.into_iter().filter(|bin| bin.count > 0).map(mean).collect()
     }
 
-    /// Error energy of `xy` at radii above 0 up to `cutoff` cycles per pixel, relative to white noise there: 1
-    /// for white noise, near 0 for blue noise. NaN if no frequency is that low.
+    /// Error energy of `xy` at radii above 0 up to `cutoff` cycles per pixel, relative to white noise there:
+    /// 1 for white noise, near 0 for blue noise. NaN if no frequency is that low.
     ///
-    /// The spatial Gaussian with `sigma_px = 2.1` halves the power at 0.09 cycles per pixel; 0.1 is a good cutoff.
+    /// The spatial Gaussian with `sigma_px = 2.1` halves the power at 0.09 cycles per pixel; 0.1 is a good
+    /// cutoff.
     pub fn low_frequency_share(&self, cutoff: f64) -> f64 {
         let low = self.frequencies().filter(|&(radius, _)| radius <= cutoff);
         let (sum, count) = low.fold((0.0, 0.0), |(sum, count), (_, power)| (sum + power, count + 1.0));
@@ -206,98 +231,4 @@ fn accumulate(plane: &Transform, scratch: &mut Scratch, power: &mut [f64]) {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::metrics::{Estimate, Family, error_image};
-    use crate::table::extent::Extent;
-    use approx::{assert_abs_diff_eq, assert_relative_eq};
-    use ndarray::Array3;
-
-    fn image(shape: (usize, usize, usize), f: impl Fn(usize, usize, usize) -> f64) -> Spectra {
-        Spectra::of_image(Array3::from_shape_fn(shape, |(t, y, x)| f(t, y, x)).view(), 1.0)
-    }
-
-    /// All power at one frequency: N times white noise there, nothing elsewhere.
-    fn assert_peaks(spectrum: &Array2<f64>, peaks: &[([usize; 2], f64)]) {
-        for ((row, column), &power) in spectrum.indexed_iter() {
-            let peak = peaks.iter().find(|(at, _)| *at == [row, column]);
-            assert_abs_diff_eq!(power, peak.map_or(0.0, |(_, power)| *power), epsilon = 1e-10);
-        }
-    }
-
-    #[test]
-    fn patterns_peak_where_they_should() {
-        let sign = |n: usize| if n.is_multiple_of(2) { 1.0 } else { -1.0 };
-        // A checkerboard that stands still: the Nyquist frequency, which is row and column 0 of a centred array.
-        let checkerboard = image((4, 6, 8), |_, y, x| sign(x + y));
-        assert_peaks(&checkerboard.xy, &[([0, 0], 48.0)]);
-        assert_peaks(&checkerboard.xt, &[([2, 0], 32.0)]);
-        // Flicker of whole frames; a constant.
-        let flicker = image((4, 6, 8), |t, _, _| sign(t));
-        assert_peaks(&flicker.xy, &[([3, 4], 48.0)]);
-        assert_peaks(&flicker.xt, &[([0, 4], 32.0)]);
-        // One cycle down 5 rows, two cycles across 7 columns: a wave and its mirror share the power ½ · 35.
-        let wave = image((1, 5, 7), |_, y, x| {
-            (std::f64::consts::TAU * (y as f64 / 5.0 + 2.0 * x as f64 / 7.0)).cos()
-        });
-        assert_peaks(&wave.xy, &[([3, 5], 8.75), ([1, 1], 8.75)]);
-        let radial = wave.radial();
-        let peak = radial.iter().max_by(|a, b| a.power.total_cmp(&b.power)).unwrap();
-        // Two frequencies of the ring around 0.35 · 7 ≈ 2: radius (1/5, 2/7).
-        assert!((peak.frequency - 0.2_f64.hypot(2.0 / 7.0)).abs() < 0.5 / 7.0);
-        assert_abs_diff_eq!(wave.low_frequency_share(0.2), 0.0, epsilon = 1e-12);
-        assert!(wave.low_frequency_share(0.36) > 1.0);
-        assert!(wave.low_frequency_share(0.01).is_nan());
-    }
-
-    /// Mean power over 64 tables of every frequency within 5 standard errors of 1 (192 checks, p = 1e-4).
-    #[test]
-    fn white_noise_is_flat() {
-        let extent = Extent { frames: 3, height: 6, width: 8, spp: 2 };
-        let integrands = Integrands::random(2, 16, 1).unwrap();
-        let spectra: Vec<Spectra> = (0..64)
-            .map(|seed| {
-                let table = SampleTable::white_noise(extent, 2, seed).unwrap();
-                Spectra::of_table(&table, &[1, 0], &integrands).unwrap()
-            })
-            .collect();
-        let check = |pick: &dyn Fn(&Spectra) -> f64| {
-            let over = Estimate::of(spectra.iter().map(pick));
-            assert!((over.mean - 1.0).abs() < 5.0 * over.standard_error, "{over:?}");
-            assert!(over.standard_error < 0.2, "{over:?}");
-        };
-        for x in 0..8 {
-            for y in 0..6 {
-                check(&|spectra| spectra.xy[[y, x]]);
-            }
-            for t in 0..3 {
-                check(&|spectra| spectra.xt[[t, x]]);
-            }
-        }
-        check(&|spectra| spectra.radial()[1].power);
-        check(&|spectra| spectra.low_frequency_share(0.25));
-    }
-
-    #[test]
-    fn a_table_is_the_mean_of_its_images() {
-        let extent = Extent { frames: 2, height: 3, width: 4, spp: 2 };
-        let table = SampleTable::white_noise(extent, 3, 7).unwrap();
-        let integrands = Integrands::random(2, 3, 1).unwrap();
-        let spectra = Spectra::of_table(&table, &[2, 1], &integrands).unwrap();
-        let (mut xy, mut xt) = (Array2::zeros((3, 4)), Array2::zeros((2, 4)));
-        for integrand in Family::ALL.iter().flat_map(|&family| integrands.family(family)) {
-            let errors = error_image(&table, &[2, 1], integrand).unwrap();
-            let one = Spectra::of_image(errors.view(), integrand.variance() / 2.0);
-            xy += &(one.xy / 12.0);
-            xt += &(one.xt / 12.0);
-        }
-        for (mean, expected) in spectra.xy.iter().chain(&spectra.xt).zip(xy.iter().chain(&xt)) {
-            assert_relative_eq!(mean, expected, max_relative = 1e-10);
-        }
-        let on = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| Spectra::of_table(&table, &[2, 1], &integrands).unwrap())
-        };
-        assert_eq!(on(1), on(2));
-    }
-}
+mod tests;
