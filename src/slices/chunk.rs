@@ -149,8 +149,8 @@ impl Chunk {
             let squares = lanes::transport(simd, &gather, theta, &laws, network, lanes, moves);
             self.squares += f64::from(squares);
         } else {
-            for lane in 0..*count {
-                let component = |dim: usize| theta[dim][lane];
+            for lane in 0..directions.count {
+                let component = |dim: usize| directions.theta[dim][lane];
                 let law = LineLaw::new(directions, laws, lane);
                 self.squares += if single {
                     let put = |position: usize, moved| moves[position] = moved;

@@ -4,8 +4,12 @@ mod cloud;
 mod custom;
 mod density;
 #[cfg(feature = "image")]
+mod inks;
+#[cfg(feature = "image")]
 mod picture;
 mod start;
+#[cfg(feature = "image")]
+mod tone;
 
 use std::sync::Arc;
 
@@ -21,7 +25,7 @@ pub use cloud::PointCloud;
 pub use custom::{CustomTarget, Measure};
 pub use density::Density;
 #[cfg(feature = "image")]
-pub use picture::{Inks, Tone};
+pub use {inks::Inks, picture::Picture, tone::Tone};
 
 /// The measure that a class's samples should resemble.
 ///

@@ -4,6 +4,8 @@ mod classes;
 mod custom;
 mod density;
 #[cfg(feature = "image")]
+mod picture_files;
+#[cfg(feature = "image")]
 mod pictures;
 mod progressive;
 mod refusals;

@@ -1,7 +1,8 @@
 //! A dark page to draw on: grey pictures, blocks and lines of text in a tiny bitmap font.
 
 use font8x8::{BASIC_FONTS, UnicodeFonts};
-use image::{GrayImage, Luma};
+
+use super::raster::Grey;
 
 /// Glyphs have 8 × 8 pixels and are drawn at this scale.
 const TEXT: usize = 2;
@@ -16,7 +17,7 @@ const PAPER: u8 = 24;
 
 /// The page.
 pub struct Canvas {
-    image: GrayImage,
+    picture: Grey,
 }
 
 /// The 8-bit level of a brightness in `[0, 1]`; others are clamped.
@@ -27,15 +28,15 @@ pub fn grey(brightness: f64) -> u8 {
 impl Canvas {
     /// An empty page of so many pixels.
     pub fn new(width: usize, height: usize) -> Self {
-        Self { image: GrayImage::from_pixel(width as u32, height as u32, Luma([PAPER])) }
+        Self { picture: Grey::filled(width, height, [PAPER]) }
     }
 
     /// A rectangle of one level; what lies outside the page is left out.
     pub fn block(&mut self, [x, y]: [usize; 2], [width, height]: [usize; 2], level: u8) {
         for row in y..y + height {
             for column in x..x + width {
-                if let Some(pixel) = self.image.get_pixel_mut_checked(column as u32, row as u32) {
-                    *pixel = Luma([level]);
+                if let Some(pixel) = self.picture.pixel_mut(column, row) {
+                    *pixel = [level];
                 }
             }
         }
@@ -67,7 +68,7 @@ impl Canvas {
     }
 
     /// The page as a picture.
-    pub fn into_image(self) -> GrayImage {
-        self.image
+    pub fn into_picture(self) -> Grey {
+        self.picture
     }
 }

@@ -1,30 +1,30 @@
 //! A white page to put dots on.
 
-use image::{Rgb, RgbImage};
+use super::raster::Color;
 
 /// The page; inks on it multiply, as on paper.
 pub struct Page {
     /// What is on it so far.
-    pub image: RgbImage,
+    pub picture: Color,
 }
 
 impl Page {
     /// A white page of so many pixels.
     pub fn new(width: usize, height: usize) -> Self {
-        Self { image: RgbImage::from_pixel(width as u32, height as u32, Rgb([255; 3])) }
+        Self { picture: Color::filled(width, height, [255; 3]) }
     }
 
     /// A disc with a soft edge.
     pub fn dot(&mut self, [x, y]: [f64; 2], radius: f64, ink: [u8; 3]) {
         let range = |at: f64| {
-            (at - radius - 1.0).floor().max(0.0) as u32..=(at + radius + 1.0).ceil().max(0.0) as u32
+            (at - radius - 1.0).floor().max(0.0) as usize..=(at + radius + 1.0).ceil().max(0.0) as usize
         };
         for row in range(y) {
             for column in range(x) {
-                let Some(pixel) = self.image.get_pixel_mut_checked(column, row) else { continue };
-                let distance = (f64::from(column) + 0.5 - x).hypot(f64::from(row) + 0.5 - y);
+                let Some(pixel) = self.picture.pixel_mut(column, row) else { continue };
+                let distance = (column as f64 + 0.5 - x).hypot(row as f64 + 0.5 - y);
                 let cover = (radius + 0.5 - distance).clamp(0.0, 1.0);
-                for (value, ink) in pixel.0.iter_mut().zip(ink) {
+                for (value, ink) in pixel.iter_mut().zip(ink) {
                     let kept = 1.0 - cover * (1.0 - f64::from(ink) / 255.0);
                     *value = (f64::from(*value) * kept).round() as u8;
                 }
@@ -63,8 +63,8 @@ impl Page {
     }
 
     fn set(&mut self, x: usize, y: usize) {
-        if let Some(pixel) = self.image.get_pixel_mut_checked(x as u32, y as u32) {
-            *pixel = Rgb([190, 190, 190]);
+        if let Some(pixel) = self.picture.pixel_mut(x, y) {
+            *pixel = [190, 190, 190];
         }
     }
 }

@@ -22,7 +22,6 @@ use clap::Args;
 use fsot::files::Metadata;
 use fsot::kernel::{SpatialKernel, TemporalKernel};
 use fsot::{Kernel, SampleTable};
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 
 /// Measure a sample table against white noise of the same shape, and draw a page of it.
 #[derive(Args)]
@@ -99,7 +98,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let beside = if Metadata::path_beside(path).exists() { Some(SampleTable::load_with(path)) } else { None };
     report::metadata(&mut console, beside)?;
     let shown = report::measure(&mut console, &inspection)?;
-    save(&page::draw(&inspection, &shown)?, &out)?;
+    page::draw(&inspection, &shown)?.save(&out)?;
     writeln!(console, "page: {}", out.display())?;
     Ok(())
 }
@@ -128,15 +127,4 @@ fn check_out(out: &Path, table: &Path) -> Result<(), Failure> {
         return Err(format!("{} is a folder: give --out the name of a file", out.display()).into());
     }
     Ok(())
-}
-
-fn save(page: &image::GrayImage, out: &Path) -> Result<(), Failure> {
-    let mut bytes = Vec::new();
-    page.write_with_encoder(PngEncoder::new_with_quality(
-        &mut bytes,
-        CompressionType::Best,
-        FilterType::NoFilter,
-    ))?;
-    std::fs::write(out, bytes)
-        .map_err(|error| format!("cannot write {}: {error}; choose another --out", out.display()).into())
 }

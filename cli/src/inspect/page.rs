@@ -2,7 +2,6 @@
 
 use fsot::metrics::{Integrands, Spectra};
 use fsot::{Extent, SampleTable};
-use image::GrayImage;
 
 use super::Inspection;
 use super::integrand::{ErrorPictures, ordinary_half_plane};
@@ -10,6 +9,7 @@ use super::panels::{Content, Curves, HEIGHT, Panel, SIDE, spectrum};
 use super::report::{Shown, filter, shape};
 use crate::Failure;
 use crate::draw::canvas::{Canvas, LINE, MARGIN, grey};
+use crate::draw::raster::Grey;
 
 /// Most samples that a scatter plot shows.
 const MOST_DOTS: usize = 16_384;
@@ -21,7 +21,7 @@ struct Row {
 }
 
 /// Draws the page of a table whose first dimension group was measured.
-pub fn draw(inspection: &Inspection, shown: &Shown) -> Result<GrayImage, Failure> {
+pub fn draw(inspection: &Inspection, shown: &Shown) -> Result<Grey, Failure> {
     let Inspection { table, integrands, seed, .. } = inspection;
     let extent = table.extent();
     // Another seed than a table's own, which may have started from white noise of this very seed.
@@ -77,7 +77,7 @@ pub fn draw(inspection: &Inspection, shown: &Shown) -> Result<GrayImage, Failure
             x += panel.width() + MARGIN;
         }
     }
-    Ok(canvas.into_image())
+    Ok(canvas.into_picture())
 }
 
 /// Error of a half-plane before and after the filter, and the spectrum over all integrands.

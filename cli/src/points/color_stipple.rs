@@ -77,7 +77,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut page = Page::new(size[0] + 2 * MARGIN, size[1] + 2 * MARGIN);
     let radius = (0.5 * ((size[0] * size[1]) as f64 / arguments.count as f64).sqrt()).clamp(1.0, 6.0);
     page.scatter([MARGIN; 2], size, radius, labelled);
-    page.image.save(&arguments.out)?;
+    page.picture.save(&arguments.out)?;
     println!("{}", arguments.out.display());
     Ok(())
 }

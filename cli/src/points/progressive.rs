@@ -92,7 +92,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let dots = sequences[0].chunks_exact(2).take(length);
         page.scatter(corner, [SIDE, SIDE], radius, dots.map(|dot| (dot, BLACK)));
     }
-    page.image.save(&arguments.out)?;
+    page.picture.save(&arguments.out)?;
     println!("{}", arguments.out.display());
     Ok(())
 }

@@ -63,7 +63,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut page = Page::new(size[0] + 2 * MARGIN, size[1] + 2 * MARGIN);
     let radius = (0.3 * sigma * LONGER_SIDE as f64 / 2.0).clamp(0.8, 6.0);
     page.scatter([MARGIN; 2], size, radius, table.values().chunks_exact(2).map(|dot| (dot, BLACK)));
-    page.image.save(&arguments.out)?;
+    page.picture.save(&arguments.out)?;
     println!("{}", arguments.out.display());
     Ok(())
 }

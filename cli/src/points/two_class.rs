@@ -95,7 +95,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let dots = points.chunks_exact(2).zip(labels.iter()).filter(|(_, label)| shown(**label));
         page.scatter(corner, [SIDE, SIDE], radius, dots.map(|(dot, &label)| (dot, INKS[label as usize % 7])));
     }
-    page.image.save(&arguments.out)?;
+    page.picture.save(&arguments.out)?;
     println!("{}", arguments.out.display());
     Ok(())
 }

@@ -4,30 +4,31 @@
 
 use std::path::Path;
 
-use image::{Rgb, RgbImage};
+use fsot_cli::Failure;
+use fsot_cli::draw::raster::Color;
 
-fn main() -> Result<(), image::ImageError> {
+fn main() -> Result<(), Failure> {
     let folder = std::env::args().nth(1).unwrap_or("data".into());
-    draw(360, 270, lantern).save(Path::new(&folder).join("lantern.png"))?;
-    draw(320, 240, garden).save(Path::new(&folder).join("garden.png"))
+    draw(360, 270, lantern).save(&Path::new(&folder).join("lantern.png"))?;
+    draw(320, 240, garden).save(&Path::new(&folder).join("garden.png"))
 }
 
 /// A picture of what `scene` is at each place, x from 0 to the aspect ratio and y from 0 to 1, downwards.
-fn draw(width: u32, height: u32, scene: impl Fn(f64, f64) -> [f64; 3]) -> RgbImage {
-    RgbImage::from_fn(width, height, |column, row| {
+fn draw(width: usize, height: usize, scene: impl Fn(f64, f64) -> [f64; 3]) -> Color {
+    Color::from_fn(width, height, |column, row| {
         let mut sum = [0.0; 3];
         for sub in 0..16 {
-            let x = (f64::from(column) + (f64::from(sub % 4) + 0.5) / 4.0) / f64::from(height);
-            let y = (f64::from(row) + (f64::from(sub / 4) + 0.5) / 4.0) / f64::from(height);
+            let x = (column as f64 + (f64::from(sub % 4) + 0.5) / 4.0) / height as f64;
+            let y = (row as f64 + (f64::from(sub / 4) + 0.5) / 4.0) / height as f64;
             let light = scene(x, y);
             sum.iter_mut().zip(light).for_each(|(sum, light)| *sum += light.clamp(0.0, 1.0) / 16.0);
         }
         // Linear light to sRGB.
-        Rgb(sum.map(|light| {
+        sum.map(|light| {
             let value =
                 if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 };
             (255.0 * value).round() as u8
-        }))
+        })
     })
 }
 

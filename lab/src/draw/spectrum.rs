@@ -4,43 +4,36 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-use image::{GrayImage, ImageError, Luma};
 use ndarray::Array2;
 
 use fsot::files::TableError;
 use fsot::metrics::RadialBin;
+use fsot_cli::draw::raster::Grey;
 
 /// An 8-bit gray picture of an array, one pixel per entry: 0 is black, `white` and everything above is white,
 /// linear between. NaN is black.
 ///
 /// For a spectrum, `white = 4` shows white noise as the gray 64 and keeps peaks apart from it.
-///
-/// # Panics
-/// If an axis is longer than 2³² − 1.
-pub fn gray(values: &Array2<f64>, white: f64) -> GrayImage {
+pub fn gray(values: &Array2<f64>, white: f64) -> Grey {
     let (height, width) = values.dim();
-    let side = |len: usize| u32::try_from(len).expect("a picture has at most 2^32 - 1 pixels per side");
-    GrayImage::from_fn(side(width), side(height), |x, y| {
-        // The cast saturates, and makes 0 of NaN.
-        Luma([(255.0 * values[[y as usize, x as usize]] / white).round() as u8])
-    })
+    // The cast saturates, and makes 0 of NaN.
+    Grey::from_fn(width, height, |x, y| [(255.0 * values[[y, x]] / white).round() as u8])
 }
 
-/// Writes [`gray`] as a PNG file, over an existing one.
+/// Writes [`gray`] as a PNG file, which appears whole or not at all.
 ///
 /// # Errors
 /// The file cannot be written.
 pub fn write_gray_png(path: &Path, values: &Array2<f64>, white: f64) -> Result<(), TableError> {
-    gray(values, white).save_with_format(path, image::ImageFormat::Png).map_err(|error| {
-        let source = match error {
-            ImageError::IoError(source) => source,
-            other => std::io::Error::other(other),
-        };
-        TableError::Io { verb: "write", path: path.to_owned(), source }
+    gray(values, white).write_png(path).map_err(|source| TableError::Io {
+        verb: "write",
+        path: path.to_owned(),
+        source,
     })
 }
 
-/// Writes a radial average as CSV with the columns `frequency_cycles_per_px,power,count`, over an existing file.
+/// Writes a radial average as CSV with the columns `frequency_cycles_per_px,power,count`, over an existing
+/// file.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -65,12 +58,12 @@ mod tests {
     fn pictures_clip_at_black_and_white_and_come_back_from_disk() {
         let values = array![[0.0, 1.0, 4.0], [5.0, -1.0, f64::NAN]];
         let picture = gray(&values, 4.0);
-        assert_eq!(picture.dimensions(), (3, 2));
-        assert_eq!(picture.as_raw(), &[0, 64, 255, 255, 0, 0]);
+        assert_eq!([picture.width(), picture.height()], [3, 2]);
+        assert_eq!(picture.samples(), &[0, 64, 255, 255, 0, 0]);
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("spectrum.png");
         write_gray_png(&path, &values, 4.0).unwrap();
-        assert_eq!(image::open(&path).unwrap().into_luma8(), picture);
+        assert_eq!(image::open(&path).unwrap().as_luma8().unwrap().as_raw(), picture.samples());
     }
 
     #[test]

@@ -68,14 +68,6 @@ pub enum RenderError {
         /// The system's word.
         source: std::io::Error,
     },
-    /// A picture could not be encoded.
-    #[error("cannot encode {}: {source}", path.display())]
-    Picture {
-        /// The file.
-        path: PathBuf,
-        /// The encoder's word.
-        source: image::ImageError,
-    },
 }
 
 /// Refuses an empty axis.

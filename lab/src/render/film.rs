@@ -1,12 +1,12 @@
 //! Images: linear luminance per pixel and frame, and their way into files.
 
-use std::io::{Cursor, Write};
+use std::io;
 use std::path::Path;
 
-use image::{GrayImage, ImageFormat, Luma, Rgb, Rgb32FImage};
+use fsot_cli::draw::raster::Grey;
 
 use super::error::{RenderError, not_empty};
-use fsot::files::WholeFile;
+use crate::draw::write_exr;
 
 /// Linear luminance `[frame][y][x]` in C order.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,12 +70,10 @@ impl Film {
     ///
     /// # Errors
     /// A frame that the film does not have.
-    pub fn to_grey(&self, frame: usize, exposure: f64) -> Result<GrayImage, RenderError> {
+    pub fn to_grey(&self, frame: usize, exposure: f64) -> Result<Grey, RenderError> {
         let values = self.frame(frame)?;
-        let width = self.shape[2];
-        Ok(GrayImage::from_fn(width as u32, self.shape[1] as u32, |x, y| {
-            Luma([srgb(values[y as usize * width + x as usize] * exposure)])
-        }))
+        let [_, height, width] = self.shape;
+        Ok(Grey::from_fn(width, height, |x, y| [srgb(values[y * width + x] * exposure)]))
     }
 
     /// Writes [`to_grey`](Self::to_grey) as PNG; the file appears whole or not at all.
@@ -84,35 +82,25 @@ impl Film {
     /// A frame that the film does not have; a path that cannot be written.
     pub fn save_png(&self, path: impl AsRef<Path>, frame: usize, exposure: f64) -> Result<(), RenderError> {
         let path = path.as_ref();
-        let picture = self.to_grey(frame, exposure)?;
-        save(path, |out| picture.write_to(out, ImageFormat::Png))
+        self.to_grey(frame, exposure)?.write_png(path).map_err(|source| unwritten(path, source))
     }
 
-    /// Writes one frame as EXR: linear, 32-bit, the luminance in each of R, G and B, which every viewer shows.
+    /// Writes one frame as EXR: linear, 32-bit, the luminance in each of R, G and B, which every viewer
+    /// shows. The file appears whole or not at all.
     ///
     /// # Errors
     /// A frame that the film does not have; a path that cannot be written.
     pub fn save_exr(&self, path: impl AsRef<Path>, frame: usize) -> Result<(), RenderError> {
         let path = path.as_ref();
         let values = self.frame(frame)?;
-        let width = self.shape[2];
-        let picture = Rgb32FImage::from_fn(width as u32, self.shape[1] as u32, |x, y| {
-            Rgb([values[y as usize * width + x as usize] as f32; 3])
-        });
-        save(path, |out| picture.write_to(out, ImageFormat::OpenExr))
+        let [_, height, width] = self.shape;
+        write_exr(path, [width, height], |x, y| [values[y * width + x] as f32; 3])
+            .map_err(|source| unwritten(path, source))
     }
 }
 
-/// Encodes in memory, writes beside the path and renames.
-fn save(
-    path: &Path,
-    encode: impl FnOnce(&mut Cursor<Vec<u8>>) -> image::ImageResult<()>,
-) -> Result<(), RenderError> {
-    let mut bytes = Cursor::new(Vec::new());
-    encode(&mut bytes).map_err(|source| RenderError::Picture { path: path.into(), source })?;
-    WholeFile::write(path, |out| out.write_all(bytes.get_ref()))
-        .and_then(WholeFile::commit)
-        .map_err(|source| RenderError::Io { verb: "write", path: path.into(), source })
+fn unwritten(path: &Path, source: io::Error) -> RenderError {
+    RenderError::Io { verb: "write", path: path.into(), source }
 }
 
 /// The sRGB transfer curve (IEC 61966-2-1) in 8 bits.

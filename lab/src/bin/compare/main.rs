@@ -9,7 +9,7 @@
 
 mod sheet;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -68,7 +68,7 @@ fn main() -> ExitCode {
 /// A sampler's realisation with this seed.
 type Realise<'t> = Box<dyn Fn(u64) -> Box<dyn Sampler + 't> + 't>;
 
-type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
+type Outcome<T> = Result<T, fsot_cli::Failure>;
 
 /// A rendering and what is said about it.
 struct Entry {
@@ -167,9 +167,7 @@ fn run(args: &Args) -> Outcome<()> {
     );
     print_ratios(&entries);
     let path = args.out.join(format!("{}-{}spp.png", scene.name, args.spp));
-    contact_sheet(&scene, args, &entries, &reference, &temporal)?
-        .save(&path)
-        .map_err(|error| format!("cannot write {}: {error}; choose another --out", path.display()))?;
+    contact_sheet(&scene, args, &entries, &reference, &temporal)?.picture().save(&path)?;
     println!("contact sheet: {}", path.display());
     Ok(())
 }
@@ -305,11 +303,4 @@ fn contact_sheet(
         );
     }
     Ok(sheet)
-}
-
-impl Sheet {
-    /// Writes the sheet as PNG.
-    fn save(&self, path: &Path) -> Outcome<()> {
-        Ok(self.picture().save(path)?)
-    }
 }

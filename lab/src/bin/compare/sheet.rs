@@ -1,11 +1,11 @@
 //! A labelled contact sheet: grey pictures in a grid.
 
 use fsot_lab::render::{Film, RenderError};
-use image::GrayImage;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 use fsot_cli::draw::canvas::{Canvas, LETTER, LINE, MARGIN, grey};
+use fsot_cli::draw::raster::Grey;
 
 const ROWS: usize = 4;
 
@@ -59,7 +59,7 @@ impl Sheet {
     }
 
     /// The finished picture.
-    pub fn picture(&self) -> GrayImage {
+    pub fn picture(&self) -> Grey {
         let cell = self.side * self.zoom;
         let (step_x, step_y) = (cell + MARGIN, cell + LINE + MARGIN);
         let top = MARGIN + 5 * LINE + 2 * MARGIN;
@@ -88,7 +88,7 @@ impl Sheet {
                 }
             }
         }
-        out.into_image()
+        out.into_picture()
     }
 }
 

@@ -164,9 +164,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         let kind = if trial.animated { "animated" } else { "still" };
         let path = out.join(format!("{}-{kind}-{spp}spp.png", trial.scene));
-        sheet::draw(setting, spp, &shown)?
-            .save(&path)
-            .map_err(|error| format!("cannot write {}: {error}; choose another --out", path.display()))?;
+        sheet::draw(setting, spp, &shown)?.save(&path)?;
         // After each trial, so that a run that is cut off keeps what it has.
         std::fs::write(&csv, report.csv())
             .map_err(|error| format!("cannot write {}: {error}; choose another --out", csv.display()))?;

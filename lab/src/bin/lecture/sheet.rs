@@ -2,20 +2,20 @@
 
 use fsot::metrics::Spectra;
 use fsot_lab::render::{Film, ImageFilter};
-use image::GrayImage;
 use ndarray::ArrayView3;
 
 use crate::Failure;
 use crate::contenders::Contender;
 use crate::measure::Setting;
 use fsot_cli::draw::canvas::{Canvas, LINE, MARGIN, grey};
+use fsot_cli::draw::raster::Grey;
 
 /// Least width of a picture on the sheet: room for every name.
 const SIDE: usize = 352;
 const COLUMNS: usize = 5;
 
 /// One cell per sampler: the last frame, its filtered error, its spectrum.
-pub fn draw(setting: &Setting, spp: u32, shown: &[(Contender, Film, f64)]) -> Result<GrayImage, Failure> {
+pub fn draw(setting: &Setting, spp: u32, shown: &[(Contender, Film, f64)]) -> Result<Grey, Failure> {
     let [height, width] = setting.resolution;
     let zoom = SIDE.div_ceil(width);
     let (cell, gap) = (width * zoom, MARGIN / 2);
@@ -54,7 +54,7 @@ pub fn draw(setting: &Setting, spp: u32, shown: &[(Contender, Film, f64)]) -> Re
         let error = setting.error(film)?;
         let filtered = filter.apply(&error)?;
         let rows: [Vec<u8>; 3] = [
-            film.to_grey(last, exposure)?.into_raw(),
+            film.to_grey(last, exposure)?.samples().to_vec(),
             filtered.frame(last)?.iter().map(|error| grey(0.5 + 0.5 * error / three)).collect(),
             spectrum(&error, &reference.variance, spp)?.iter().map(|power| grey(power / 2.0)).collect(),
         ];
@@ -62,7 +62,7 @@ pub fn draw(setting: &Setting, spp: u32, shown: &[(Contender, Film, f64)]) -> Re
             out.picture([x, y + 2 * LINE + row * (height * zoom + gap)], width, [zoom; 2], levels);
         }
     }
-    Ok(out.into_image())
+    Ok(out.into_picture())
 }
 
 /// Power over spatial frequencies, 1 for white noise, calmed by a 3 × 3 box. Errors are first divided by their standard

@@ -1,0 +1,83 @@
+//! Pictures as inks: cyan, magenta, yellow and black.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::density::Density;
+use super::picture::Picture;
+use crate::error::{PictureError, TargetError};
+
+/// Density of each ink of a picture: cyan, magenta, yellow and black, 0 to 1 per pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Inks {
+    /// Columns and rows.
+    size: [usize; 2],
+    coverage: [Vec<f32>; 4],
+}
+
+impl Inks {
+    /// The inks of a picture on white paper: black replaces what the colours have in common. Transparency
+    /// shows the paper.
+    ///
+    /// # Errors
+    /// A picture without any ink, or with values that are not finite.
+    pub fn from_picture(picture: &Picture) -> Result<Self, TargetError> {
+        let size = [picture.width(), picture.height()];
+        let mut coverage = [(); 4].map(|()| Vec::with_capacity(size[0] * size[1]));
+        for (index, &[red, green, blue, alpha]) in picture.pixels().iter().enumerate() {
+            let [x, y] = [index % size[0], index / size[0]];
+            let bad = [red, green, blue, alpha].into_iter().find(|value| !value.is_finite());
+            if let Some(value) = bad {
+                return Err(TargetError::BadDensity { x, y, value: value.into() });
+            }
+            let [red, green, blue] =
+                [red, green, blue].map(|light| (alpha * light + 1.0 - alpha).clamp(0.0, 1.0));
+            let lightest = red.max(green).max(blue);
+            let ink = |light: f32| if lightest > 0.0 { 1.0 - light / lightest } else { 0.0 };
+            let inks = [ink(red), ink(green), ink(blue), 1.0 - lightest];
+            coverage.iter_mut().zip(inks).for_each(|(coverage, ink)| coverage.push(ink));
+        }
+        if coverage.iter().flatten().all(|&ink| ink == 0.0) {
+            return Err(TargetError::NoDensity { width: size[0], height: size[1] });
+        }
+        Ok(Self { size, coverage })
+    }
+
+    /// The same of a PNG or EXR file.
+    ///
+    /// # Errors
+    /// Whatever [`Picture::open`] and [`Inks::from_picture`] refuse.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, PictureError> {
+        let path = path.as_ref();
+        Self::from_picture(&Picture::open(path)?)
+            .map_err(|problem| PictureError::Density { path: path.to_owned(), problem })
+    }
+
+    /// Density of an ink (0 cyan, 1 magenta, 2 yellow, 3 black); `None` if there is none of it.
+    pub fn density(&self, ink: usize) -> Option<Density> {
+        Density::new(self.size[0], self.size[1], self.coverage.get(ink)?.clone()).ok()
+    }
+
+    /// Points of each ink if there are `count` in all, in proportion to what it covers.
+    pub fn counts(&self, count: usize) -> [usize; 4] {
+        let masses: [f64; 4] =
+            std::array::from_fn(|ink| self.coverage[ink].iter().map(|&value| f64::from(value)).sum());
+        let total: f64 = masses.iter().sum();
+        let (mut before, mut below) = (0, 0.0);
+        masses.map(|mass| {
+            below += mass;
+            // Rounded sums, so that they add up.
+            let upto = (count as f64 * (below / total)).round() as usize;
+            std::mem::replace(&mut before, upto).abs_diff(upto)
+        })
+    }
+
+    /// The density of some inks together, each with its mass; `None` if there is none of any.
+    pub(crate) fn mixture(&self, inks: &[u32]) -> Option<Arc<Density>> {
+        let mut values = vec![0.0; self.size[0] * self.size[1]];
+        for coverage in inks.iter().filter_map(|&ink| self.coverage.get(ink as usize)) {
+            values.iter_mut().zip(coverage).for_each(|(sum, ink)| *sum += ink);
+        }
+        Density::new(self.size[0], self.size[1], values).ok().map(Arc::new)
+    }
+}
