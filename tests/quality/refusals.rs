@@ -169,7 +169,7 @@ fn kernels() {
             let (target, role) = (Target::UniformCube, Role::Descend);
             config.terms = vec![Term { classes, target, dims: vec![0], weight: 1.0, role }];
         });
-        assert_eq!(words, format!("truncation is {truncation}: give a value in [0, 1)"));
+        assert_eq!(words, format!("term 0: truncation is {truncation}: give a value in [0, 1)"));
     }
 }
 
