@@ -1,8 +1,10 @@
-//! Filtered sliced optimal transport: tables of random numbers whose Monte Carlo error is blue noise in space and time.
+//! Filtered sliced optimal transport: tables of random numbers whose Monte Carlo error is blue noise in space
+//! and time.
 //!
-//! A renderer that takes its random numbers from such a table makes the errors of neighbouring pixels and frames cancel
-//! under the low-pass filter that follows: the eye, a denoiser, temporal antialiasing. The method is that of Salaün et
-//! al. 2022[^salaun] and its spatio-temporal extension by Korać et al. 2023[^korac], written from the mathematics.
+//! A renderer that takes its random numbers from such a table makes the errors of neighbouring pixels and
+//! frames cancel under the low-pass filter that follows: the eye, a denoiser, temporal antialiasing. The
+//! method is that of Salaün et al. 2022[^salaun] and its spatio-temporal extension by Korać et al.
+//! 2023[^korac], written from the mathematics.
 //!
 //! ```
 //! use fsot::{Config, Extent, Optimizer, Site, Until, metrics};
@@ -19,13 +21,15 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! `table.save("table.npy")` writes it for everybody else. You can stop here; the rest is what happens inside.
+//! `table.save("table.npy")` writes it for everybody else. You can stop here; the rest is what happens
+//! inside.
 //!
 //! # Point sets
 //!
-//! Pixels are one family of classes among others, and the cube one target. [`Config::classes`] makes sets whose labelled
-//! parts and their unions are all uniform, [`Config::progressive`] sequences whose prefixes are, [`Config::stippling`] points as
-//! dense as a picture; [`Classes`] and [`Target`] hold the rest, and [`ClassFamily`] and [`Measure`] whatever is yours.
+//! Pixels are one family of classes among others, and the cube one target. [`Config::classes`] makes sets
+//! whose labelled parts and their unions are all uniform, [`Config::progressive`] sequences whose prefixes
+//! are, [`Config::stippling`] points as dense as a picture; [`Classes`] and [`Target`] hold the rest, and
+//! [`ClassFamily`] and [`Measure`] whatever is yours.
 //!
 //! ```
 //! use fsot::config::LabelSubsets;
@@ -44,18 +48,19 @@
 //!
 //! # What it promises
 //!
-//! * The same seed gives the same bits at any thread count, on the AVX-512, AVX2 and baseline paths alike. Across
-//!   platforms sines, cosines and powers of the standard library may round differently in the last bit, and a run
-//!   amplifies that; tables then differ, their quality doesn't.
+//! * The same seed gives the same bits at any thread count, on the AVX-512, AVX2 and baseline paths alike.
+//!   Across platforms sines, cosines and powers of the standard library may round differently in the last
+//!   bit, and a run amplifies that; tables then differ, their quality doesn't.
 //! * Values lie in `[0, 1)`; 1.0 never appears.
-//! * Steps allocate nothing once their buffers have grown; memory stays below nine times the table (ten with SGD, eleven
-//!   with Adam), plus a few MiB per thread. (Sweeps of tiles narrower than 16 pixels take up to 16 times the table instead:
-//!   their rows are filled up.) A target other than the cube is tabulated once, in up to 17 MiB.
-//! * Bad input is refused with a typed error ([`ConfigError`], [`TableError`], [`MeasureError`]) before anything is
-//!   computed or written. The library prints nothing.
+//! * Steps allocate nothing once their buffers have grown; memory stays below nine times the table (ten with
+//!   SGD, eleven with Adam), plus a few MiB per thread. (Sweeps of tiles narrower than 16 pixels take up to
+//!   16 times the table instead: their rows are filled up.) A target other than the cube is tabulated once,
+//!   in up to 17 MiB.
+//! * Bad input is refused with a typed error ([`ConfigError`], [`TableError`], [`MeasureError`]) before
+//!   anything is computed or written. The library prints nothing.
 //!
-//! What it is not: a renderer, a denoiser, a GPU library, or a source of random numbers for anything that needs
-//! statistical independence between pixels.
+//! What it is not: a renderer, a denoiser, a GPU library, or a source of random numbers for anything that
+//! needs statistical independence between pixels.
 //!
 //! [`ClassFamily`]: classes::ClassFamily
 //! [`Classes`]: classes::Classes
@@ -64,10 +69,11 @@
 //! [`TableError`]: files::TableError
 //! [`Target`]: targets::Target
 //!
-//! [^salaun]: Salaün, Georgiev, Seidel, Singh 2022, "Scalable multi-class sampling via filtered sliced optimal transport",
-//!     ACM TOG 41(6), <https://doi.org/10.1145/3550454.3555484>.
-//! [^korac]: Korać, Salaün, Georgiev, Grittmann, Slusallek, Myszkowski, Singh 2023, "Perceptual error optimization for Monte
-//!     Carlo animation rendering", SIGGRAPH Asia, <https://doi.org/10.1145/3610548.3618146>.
+//! [^salaun]: Salaün, Georgiev, Seidel, Singh 2022, "Scalable multi-class sampling via filtered sliced
+//!     optimal transport", ACM TOG 41(6), <https://doi.org/10.1145/3550454.3555484>.
+//! [^korac]: Korać, Salaün, Georgiev, Grittmann, Slusallek, Myszkowski, Singh 2023, "Perceptual error
+//!     optimization for Monte Carlo animation rendering", SIGGRAPH Asia,
+//!     <https://doi.org/10.1145/3610548.3618146>.
 
 pub mod classes;
 pub mod config;

@@ -1,8 +1,8 @@
 //! Random numbers named by where they are used, never by which thread drew them.
 //!
-//! Every consumer asks for the generator of its own `(seed, purpose, step, index)`. The four numbers are mixed
-//! into the 256-bit state of a xoshiro256++ with SplitMix64's finaliser (Steele, Lea and Flood 2014, "Fast
-//! splittable pseudorandom number generators"), so generators of neighbouring names are unrelated.
+//! Every consumer asks for the generator of its own `(seed, purpose, step, index)`. The four numbers are
+//! mixed into the 256-bit state of a xoshiro256++ with SplitMix64's finaliser (Steele, Lea and Flood 2014,
+//! "Fast splittable pseudorandom number generators"), so generators of neighbouring names are unrelated.
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -69,8 +69,9 @@ pub(crate) fn uniforms(seed: u64, count: usize) -> Vec<f32> {
     (0..count).map(|_| generator.random()).collect()
 }
 
-/// Steps of a Kronecker sequence, `(1/φ, 1/φ², …)` with the root `φ` of `φ^(dims + 1) = φ + 1`: the golden ratio for one
-/// dimension, R2 for two (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
+/// Steps of a Kronecker sequence, `(1/φ, 1/φ², …)` with the root `φ` of `φ^(dims + 1) = φ + 1`: the golden
+/// ratio for one dimension, R2 for two (Roberts 2018, "The unreasonable effectiveness of quasirandom
+/// sequences").
 pub fn kronecker_steps(dims: usize) -> Vec<f64> {
     // Newton's iteration would do; this contraction cannot leave (1, 2).
     let phi = (0..100).fold(1.5_f64, |phi, _| (1.0 + phi).powf(1.0 / (dims as f64 + 1.0)));

@@ -136,8 +136,8 @@ fn the_bytes_are_those_that_numpy_reads() {
     let rest = dictionary[expected.len()..].trim();
     assert!(rest == "}" || rest == ", }", "{dictionary}");
     assert_eq!(bytes.len(), header + 144 * 4);
-    // [frame 1, y 2, x 3, sample 1, dim 2] is the last value; one sample earlier is 3 values earlier, one pixel
-    // 6, one row 24, one frame 72.
+    // [frame 1, y 2, x 3, sample 1, dim 2] is the last value; one sample earlier is 3 values earlier, one
+    // pixel 6, one row 24, one frame 72.
     for (before, value) in [(0, 0.143_f32), (1, 0.142), (3, 0.140), (6, 0.137), (24, 0.119), (72, 0.071)] {
         let at = bytes.len() - 4 * (before + 1);
         assert_eq!(bytes[at..at + 4], value.to_le_bytes(), "{before} values before the last");
@@ -287,9 +287,8 @@ fn values_outside_the_range_are_located() {
     {
         let bytes = f32s("(1, 1, 2, 1, 2)", &[0.0, 0.25, 0.5, bad]);
         let found = problem(&bytes, &[word, "[frame 0, y 0, x 1, sample 0, dim 1]", "into [0, 1)"]);
-        assert!(
-            matches!(found, FormatError::Value { at: [0, 0, 1, 0, 1], value } if value.to_bits() == bad.to_bits())
-        );
+        let FormatError::Value { at: [0, 0, 1, 0, 1], value } = found else { panic!("{found}") };
+        assert_eq!(value.to_bits(), bad.to_bits());
     }
 }
 
@@ -330,7 +329,9 @@ proptest! {
 
     /// The dictionary replaced by brackets, quotes, signs and digits, which exercises the parser.
     #[test]
-    fn odd_dictionaries_never_panic(dictionary in "[\\[\\](){}'\"\\\\,:+\\-0-9jJxeEobuUN._ bTrueFalsdcf<4]{0,80}") {
+    fn odd_dictionaries_never_panic(
+        dictionary in "[\\[\\](){}'\"\\\\,:+\\-0-9jJxeEobuUN._ bTrueFalsdcf<4]{0,80}"
+    ) {
         prop_assert!(load_bytes(&npy(&dictionary, &[0; 4])).is_err());
         let shape = npy(&format!("{{'descr': '<f4', 'fortran_order': False, 'shape': {dictionary}}}"), &[]);
         prop_assert!(load_bytes(&shape).is_err());

@@ -160,7 +160,8 @@ impl Listed {
         &self.samples[list][..count]
     }
 
-    /// Weight that a random level of a class selects, times a factor, in the mean over classes that hold any sample.
+    /// Weight that a random level of a class selects, times a factor, in the mean over classes that hold any
+    /// sample.
     fn mean(&self, factor: impl Fn(usize) -> f64) -> f64 {
         let (mut sum, mut holding) = (0.0, 0);
         for member in 0..self.members() {

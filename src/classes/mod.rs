@@ -1,4 +1,5 @@
-//! Families of filters. A *class* is one member of a family: the filter of one pixel, of one label, of a prefix.
+//! Families of filters. A *class* is one member of a family: the filter of one pixel, of one label, of a
+//! prefix.
 
 mod blocks;
 mod custom;
@@ -23,8 +24,9 @@ use crate::kernel::Kernel;
 
 /// A family of filters over the samples of a table (Salaün et al. 2022, Section 3).
 ///
-/// Samples are numbered in the order of the table, `site * spp + sample`; a point set ([`crate::Extent::points`]) has one
-/// per site. A class that holds no sample is never drawn and costs nothing.
+/// Samples are numbered in the order of the table, `site * spp + sample`; a point set
+/// ([`crate::Extent::points`]) has one per site. A class that holds no sample is never drawn and costs
+/// nothing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -49,8 +51,8 @@ pub enum Classes {
         /// The classes. A set whose labels no sample carries is an empty class.
         subsets: Vec<LabelSet>,
     },
-    /// One class per ramp: filters that rise or fall along a coordinate of the samples. Its level sets are the samples
-    /// beyond any threshold, so that every part of the ramp looks like the target.
+    /// One class per ramp: filters that rise or fall along a coordinate of the samples. Its level sets are
+    /// the samples beyond any threshold, so that every part of the ramp looks like the target.
     Ramps {
         /// Class coordinate of each sample, in `[0, 1]`.
         coordinates: Arc<[f64]>,
@@ -88,8 +90,8 @@ pub enum FilterForm {
     /// Uniform level `z`, unweighted subset `{j : w_j > z}`: the objective of Salaün et al. 2022. Cheap.
     #[default]
     LevelSets,
-    /// All samples under the filter, each with its weight. By the triangle inequality a bound at least as tight,
-    /// at the cost of the whole support in every slice.
+    /// All samples under the filter, each with its weight. By the triangle inequality a bound at least as
+    /// tight, at the cost of the whole support in every slice.
     Weighted,
 }
 

@@ -64,7 +64,8 @@ impl Prefixes {
             PrefixOf::Table => extent.samples(),
             PrefixOf::Pixel => extent.spp,
         };
-        // The first samples are in all prefixes: the short ones decide about them, and the later samples follow.
+        // The first samples are in all prefixes: the short ones decide about them, and the later samples
+        // follow.
         let weighed = |length: usize| PrefixLength { length, weight: 1.0 / length as f64 };
         let lengths = match lengths {
             PrefixLengths::Every => (1..=block).map(weighed).collect(),

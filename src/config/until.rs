@@ -14,12 +14,14 @@ pub enum Until {
     Sweeps(u64),
     /// Slices first, then sweeps.
     Work(Work),
-    /// After about this many seconds, in the sequence that gets furthest by then: sweeps where the objective has its
-    /// closed form, after slices if there is time for both; slices elsewhere. A brief calibration fixes how much work fits,
-    /// schedules follow it, and [`RunReport::work`](crate::RunReport::work) makes the very same table again, anywhere.
+    /// After about this many seconds, in the sequence that gets furthest by then: sweeps where the objective
+    /// has its closed form, after slices if there is time for both; slices elsewhere. A brief calibration
+    /// fixes how much work fits, schedules follow it, and [`RunReport::work`](crate::RunReport::work) makes
+    /// the very same table again, anywhere.
     Seconds(f64),
-    /// As soon as the mean squared displacement falls by less than the share `improvement` from one window to the
-    /// next, and at the latest after `at_most` slices per pixel and frame, the number that schedules follow.
+    /// As soon as the mean squared displacement falls by less than the share `improvement` from one window to
+    /// the next, and at the latest after `at_most` slices per pixel and frame, the number that schedules
+    /// follow.
     Converged {
         /// Least relative improvement worth going on for, in `[0, 1)`.
         improvement: f64,
@@ -32,8 +34,9 @@ pub enum Until {
 
 /// An amount of work: slices come first, then sweeps.
 ///
-/// Slices hold any class and target, and reach the lower bound; sweeps ([`Optimizer::sweep`](crate::Optimizer::sweep))
-/// take the whole of the objective's directions into account at once, and are the sooner at a low error.
+/// Slices hold any class and target, and reach the lower bound; sweeps
+/// ([`Optimizer::sweep`](crate::Optimizer::sweep)) take the whole of the objective's directions into account
+/// at once, and are the sooner at a low error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Work {
     /// Slices per pixel and frame (rounded up to whole steps).

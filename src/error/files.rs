@@ -22,7 +22,11 @@ pub enum TableError {
         expected: usize,
     },
     /// A value lies outside `[0, 1)` or is not finite.
-    #[error("the value at [frame {}, y {}, x {}, sample {}, dim {}] is {value}: values must lie in [0, 1)", at[0], at[1], at[2], at[3], at[4])]
+    #[error(
+        "the value at [frame {}, y {}, x {}, sample {}, dim {}] is {value}: \
+         values must lie in [0, 1)",
+        at[0], at[1], at[2], at[3], at[4]
+    )]
     Value {
         /// `[frame, y, x, sample, dim]`.
         at: [usize; 5],
@@ -41,7 +45,8 @@ pub enum TableError {
     },
     /// The path cannot name a table.
     #[error(
-        "{path:?} cannot name a table: give a file name that ends in .npy; .json is for the metadata beside it"
+        "{path:?} cannot name a table: give a file name that ends in .npy; \
+         .json is for the metadata beside it"
     )]
     FileName {
         /// The path.
@@ -115,7 +120,11 @@ pub enum FormatError {
         shape: Vec<usize>,
     },
     /// The array does not have five axes.
-    #[error("shape {shape:?} has {} axes instead of 5: reshape to [frame, y, x, sample, dim], 1 for an absent axis", shape.len())]
+    #[error(
+        "shape {shape:?} has {} axes instead of 5: \
+         reshape to [frame, y, x, sample, dim], 1 for an absent axis",
+        shape.len()
+    )]
     Axes {
         /// Shape of the file.
         shape: Vec<usize>,
@@ -130,7 +139,8 @@ pub enum FormatError {
     },
     /// The file does not hold as many values as its shape says.
     #[error(
-        "{given} bytes of values, but shape {shape:?} takes {expected}: the file was cut off or appended to, write it again"
+        "{given} bytes of values, but shape {shape:?} takes {expected}: \
+         the file was cut off or appended to, write it again"
     )]
     Length {
         /// Bytes after the header.
@@ -141,7 +151,11 @@ pub enum FormatError {
         shape: [usize; 5],
     },
     /// A value lies outside `[0, 1)` or is not finite.
-    #[error("the value at [frame {}, y {}, x {}, sample {}, dim {}] is {value}: bring all values into [0, 1) and save them again", at[0], at[1], at[2], at[3], at[4])]
+    #[error(
+        "the value at [frame {}, y {}, x {}, sample {}, dim {}] is {value}: \
+         bring all values into [0, 1) and save them again",
+        at[0], at[1], at[2], at[3], at[4]
+    )]
     Value {
         /// `[frame, y, x, sample, dim]`.
         at: [usize; 5],
@@ -172,7 +186,8 @@ pub enum FormatError {
     },
     /// The metadata describes another table.
     #[error(
-        "the metadata says shape {metadata:?}, but the table has {table:?}: bring the two that belong together"
+        "the metadata says shape {metadata:?}, but the table has {table:?}: \
+         bring the two that belong together"
     )]
     OtherTable {
         /// Shape according to the metadata.

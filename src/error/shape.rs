@@ -64,7 +64,11 @@ pub enum GroupError {
     #[error("the dimension group is empty: name at least one dimension")]
     Empty,
     /// It names a dimension that the table does not have.
-    #[error("the dimension group names dimension {dimension}, but the table has {dims}: name dimensions from 0 to {}", dims.saturating_sub(1))]
+    #[error(
+        "the dimension group names dimension {dimension}, but the table has {dims}: \
+         name dimensions from 0 to {}",
+        dims.saturating_sub(1)
+    )]
     NoSuchDimension {
         /// The dimension named.
         dimension: usize,

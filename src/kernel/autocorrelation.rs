@@ -1,9 +1,11 @@
-//! Autocorrelation of a kernel over the lattice: how strongly the filters of all sites hold two sites together.
+//! Autocorrelation of a kernel over the lattice: how strongly the filters of all sites hold two sites
+//! together.
 
 use crate::kernel::Tap;
 use crate::table::extent::Extent;
 
-/// `F(c) = Σ_p w(p) w(p + c)` at the offsets where it exceeds `truncation` times its largest value, row by row.
+/// `F(c) = Σ_p w(p) w(p + c)` at the offsets where it exceeds `truncation` times its largest value, row by
+/// row.
 ///
 /// Offsets are folded to at most half the extent either way. O(taps²), and memory for one number per site.
 pub fn autocorrelation(taps: &[Tap], extent: &Extent, truncation: f64) -> Vec<Tap> {

@@ -12,8 +12,8 @@ use crate::table::domain::Domain;
 pub struct Slice {
     /// Which term of the objective.
     pub term: usize,
-    /// Which class of the term's family: the number of the pixel (in C order over frames, rows, columns), of the
-    /// frame, or 0 for the whole table.
+    /// Which class of the term's family: the number of the pixel (in C order over frames, rows, columns), of
+    /// the frame, or 0 for the whole table.
     pub member: usize,
     /// Level `z` relative to the largest filter weight, in `[0, 1)`. The subset is `{j : w_j > z}`.
     pub level: f64,
@@ -33,11 +33,13 @@ struct Moved {
 }
 
 impl Objective {
-    /// Mean over `slices` of `(n / N) W2²`, times the weight of the class, and its gradient with respect to every coordinate, in `f64`.
+    /// Mean over `slices` of `(n / N) W2²`, times the weight of the class, and its gradient with respect to
+    /// every coordinate, in `f64`.
     ///
-    /// `points` are the coordinates of all samples in the order of [`crate::SampleTable`], in `[0, 1)`; the gradient has
-    /// the same order. The weighted form replaces `n` by the sum of relative weights. An empty list of slices has
-    /// value and gradient 0. O(slices × n log n), in parallel, with a fixed order of summation.
+    /// `points` are the coordinates of all samples in the order of [`crate::SampleTable`], in `[0, 1)`; the
+    /// gradient has the same order. The weighted form replaces `n` by the sum of relative weights. An empty
+    /// list of slices has value and gradient 0. O(slices × n log n), in parallel, with a fixed order of
+    /// summation.
     ///
     /// # Errors
     /// A wrong number of points, a point outside `[0, 1)`, a slice that does not fit the objective.

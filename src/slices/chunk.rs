@@ -44,8 +44,8 @@ pub(super) struct Chunk {
     pub(super) span: (u32, u32),
     /// Samples of the subsets that are not runs.
     pub(super) samples: Vec<u32>,
-    /// Per sample of a subset and dimension of its group, the sum of `mass · displacement · theta`; of a subset with a single
-    /// direction `mass · displacement`, per sample.
+    /// Per sample of a subset and dimension of its group, the sum of `mass · displacement · theta`; of a
+    /// subset with a single direction `mass · displacement`, per sample.
     pub(super) moves: Vec<f32>,
     /// The direction of each subset that has but one.
     pub(super) thetas: Vec<f32>,

@@ -28,7 +28,8 @@ pub(crate) struct VisitOrder {
     members: Vec<u32>,
 }
 
-/// Fractional part of the golden ratio: multiples of it are evenly spread for any count (Weyl, van der Corput).
+/// Fractional part of the golden ratio: multiples of it are evenly spread for any count (Weyl, van der
+/// Corput).
 const GOLDEN_RATIO: f64 = 0.618_033_988_749_894_8;
 
 /// Which subsets are drawn.

@@ -90,8 +90,8 @@ impl Extent {
         }
     }
 
-    /// Checks that no axis is empty, that there are at most [`MOST_DIMS`] dimensions, and that `samples * dims` values can
-    /// be numbered with 31 bits.
+    /// Checks that no axis is empty, that there are at most [`MOST_DIMS`] dimensions, and that `samples *
+    /// dims` values can be numbered with 31 bits.
     ///
     /// # Errors
     /// The first axis that is empty, or what there is too much of.

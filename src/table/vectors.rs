@@ -69,7 +69,8 @@ fn disc(u: f64, v: f64) -> [f64; 2] {
 impl SampleTable {
     /// Two dimensions of the table as vectors `[frame, y, x, sample, component]`.
     ///
-    /// Components lie in `[-1, 1]`; `ndarray_npy::write_npy` writes them, and `0.5 * value + 0.5` fits them into a texture.
+    /// Components lie in `[-1, 1]`; `ndarray_npy::write_npy` writes them, and `0.5 * value + 0.5` fits them
+    /// into a texture.
     ///
     /// # Errors
     /// A dimension that the table does not have, or the same one twice.

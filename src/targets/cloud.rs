@@ -5,10 +5,11 @@ use serde::{Deserialize, Serialize};
 use crate::error::TargetError;
 use crate::laws::Pieces;
 
-/// Equally weighted points of the unit cube that stand for a measure: draws of any sampler, or points to be thinned out.
+/// Equally weighted points of the unit cube that stand for a measure: draws of any sampler, or points to be
+/// thinned out.
 ///
-/// Along each direction the law of up to 2048 points is exact; of more, neighbours are merged into pieces with their mass and
-/// mean.
+/// Along each direction the law of up to 2048 points is exact; of more, neighbours are merged into pieces
+/// with their mass and mean.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Unchecked")]
 pub struct PointCloud {

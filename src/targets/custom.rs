@@ -5,7 +5,8 @@ use crate::named::{ByName, Named};
 
 /// A target measure of the caller's own, on the unit cube.
 ///
-/// It is asked for the laws of a fixed set of directions when an objective is planned, and never during the optimisation.
+/// It is asked for the laws of a fixed set of directions when an objective is planned, and never during the
+/// optimisation.
 pub trait Measure: std::fmt::Debug + Send + Sync {
     /// Name for messages and for a serialised [`crate::Config`].
     fn name(&self) -> &str;

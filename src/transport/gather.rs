@@ -33,8 +33,8 @@ pub(crate) struct Gather<'a> {
 }
 
 impl Gather<'_> {
-    /// Writes the coordinates of a listed subset, sample by sample, from the middle of the cube. A run is none that the
-    /// lanes take.
+    /// Writes the coordinates of a listed subset, sample by sample, from the middle of the cube. A run is
+    /// none that the lanes take.
     #[inline(always)]
     pub(super) fn gather(&self, coordinates: &mut [f32]) {
         let Samples::List(list) = self.samples else { return };
