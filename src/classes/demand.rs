@@ -9,6 +9,18 @@ use crate::table::extent::{Extent, Site};
 ///
 /// A pixel that is *not* demanded has the same value whatever random numbers it is given: background, a
 /// visible light, full shadow. Its samples need no optimisation.
+///
+/// ```
+/// use fsot::classes::Demand;
+/// use fsot::{Config, Extent, Optimizer, Until};
+///
+/// // The left half of a picture needs dimensions 0 and 1 only.
+/// let pixels = (0..32 * 32).map(|pixel| pixel % 32 < 16).collect();
+/// let demand = Demand::new([1, 32, 32], pixels, vec![vec![0, 1]])?;
+/// assert_eq!((demand.share(), demand.dims()), (0.5, 2));
+/// Optimizer::for_demand(Config::new(Extent::still(32, 32), 4), &demand)?.run(Until::Sweeps(2))?;
+/// # Ok::<(), fsot::ConfigError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Demand {
     frames: usize,

@@ -27,6 +27,24 @@ use crate::kernel::Kernel;
 /// Samples are numbered in the order of the table, `site * spp + sample`; a point set
 /// ([`crate::Extent::points`]) has one per site. A class that holds no sample is never drawn and costs
 /// nothing.
+///
+/// ```
+/// use fsot::classes::{Classes, FilterForm};
+/// use fsot::config::{Role, Term};
+/// use fsot::targets::Target;
+/// use fsot::{Config, Extent, Kernel, Objective};
+///
+/// // Filtered pixels of two samples each, and the samples of each pixel by themselves.
+/// let of = |classes, weight| {
+///     let (target, dims, role) = (Target::UniformCube, vec![0, 1], Role::Descend);
+///     Term { classes, target, dims, weight, role }
+/// };
+/// let lattice = Classes::Lattice { kernel: Kernel::gaussian(2.1), form: FilterForm::LevelSets };
+/// let terms = vec![of(lattice, 1.0), of(Classes::PerPixel, 0.2)];
+/// let config = Config::new(Extent::still(16, 16).with_spp(2), 2).with_terms(terms);
+/// assert_eq!(Objective::new(&config)?.terms().count(), 2);
+/// # Ok::<(), fsot::ConfigError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -84,6 +102,14 @@ impl Classes {
 }
 
 /// How the weights of a filter enter the transport.
+///
+/// ```
+/// use fsot::classes::FilterForm;
+/// use fsot::{Config, Extent};
+///
+/// let config = Config::new(Extent::still(16, 16), 2).with_form(FilterForm::Weighted);
+/// # let _ = config;
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FilterForm {

@@ -10,6 +10,15 @@ use crate::error::RangeError;
 /// the step that held it, in a group of `d` dimensions. That is the negative gradient of the objective,
 /// divided by the number of slices that held the coordinate: its unit is that of a coordinate, whatever the
 /// size of the table or the batch.
+///
+/// ```
+/// use fsot::config::{Descent, Schedule};
+/// use fsot::{Config, Extent};
+///
+/// let slow = Descent::Barycentric { rate: Schedule::cosine(1.0, 0.01) };
+/// let config = Config::new(Extent::still(32, 32), 2).with_descent(slow);
+/// assert_eq!(config.descent.rate().ends(), [1.0, 0.01]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Descent {

@@ -9,6 +9,16 @@ use crate::table::extent::Extent;
 use crate::targets::{Density, Inks, Target};
 
 /// Which sets of labels are classes of their own.
+///
+/// ```
+/// use fsot::config::LabelSubsets;
+/// use fsot::{Config, Until};
+///
+/// // 32 points labelled 0 and 16 labelled 1; each label and both together are uniform.
+/// let points = Config::classes(&[32, 16], 2, &LabelSubsets::EachAndAll).optimize(Until::SlicesPerClass(256))?;
+/// assert_eq!(points.values().len(), 2 * 48);
+/// # Ok::<(), fsot::ConfigError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LabelSubsets {
     /// Each label, and all of them together.

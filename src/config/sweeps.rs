@@ -16,6 +16,15 @@ use crate::error::RangeError;
 /// A step moves a sixteenth of the neighbours together; what they do to each other's pull grows with their
 /// number. Rates beyond `16 / (n r)` don't settle, and are taken as that: in two dimensions 5 at one sample
 /// per pixel of a still picture, 1.3 at sixteen; in four dimensions 2 and 0.25.
+///
+/// ```
+/// use fsot::config::{Schedule, Sweeps};
+/// use fsot::{Config, Extent};
+///
+/// let gentle = Sweeps { rate: Schedule::geometric(1.0, 0.05), ..Sweeps::default() };
+/// let config = Config::new(Extent::still(32, 32), 2).with_sweeps(gentle);
+/// # let _ = config;
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sweeps {
     /// Step size of a run of sweeps alone. One of `n` sweeps begins no higher than at `√n`, and ends no lower

@@ -14,6 +14,16 @@ const MOST_SLICES: usize = i32::MAX as usize;
 
 /// One part of the objective: a family of classes, what their samples should resemble, and in which
 /// dimensions.
+///
+/// ```
+/// use fsot::config::Role;
+/// use fsot::{Config, Extent};
+///
+/// // The default: a lattice of filters that is descended, and the whole table that is balanced.
+/// let config = Config::new(Extent::still(64, 64), 2);
+/// let roles: Vec<Role> = config.terms.iter().map(|term| term.role).collect();
+/// assert_eq!(roles, [Role::Descend, Role::Balance]);
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Term {
     /// The filters.
@@ -31,6 +41,12 @@ pub struct Term {
 }
 
 /// How the slices of a term move the samples.
+///
+/// ```
+/// use fsot::config::Role;
+///
+/// assert_eq!(Role::default(), Role::Descend);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
@@ -45,6 +61,17 @@ pub enum Role {
 }
 
 /// A group of dimensions that a renderer consumes together, with its share of the work.
+///
+/// ```
+/// use fsot::config::DimensionGroup;
+/// use fsot::{Config, Extent};
+///
+/// // A point on the light, one on the lens, and a little of all four together.
+/// let all = DimensionGroup::new([0, 1, 2, 3]).with_weight(0.25);
+/// let groups = [DimensionGroup::new([0, 1]), DimensionGroup::new([2, 3]), all];
+/// let config = Config::new(Extent::still(32, 32), 4).with_groups(&groups);
+/// assert_eq!(config.groups(), groups);
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DimensionGroup {
     /// Dimensions of the table, each once.
@@ -117,6 +144,15 @@ impl Term {
 }
 
 /// How slices are drawn.
+///
+/// ```
+/// use fsot::config::Slicing;
+/// use fsot::{Config, Extent};
+///
+/// let slicing = Slicing { batch_slices: Some(4096), ..Slicing::default() };
+/// let config = Config::new(Extent::still(64, 64), 2).with_slicing(slicing);
+/// # let _ = config;
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Slicing {
     /// Directions per filtered subset, `1..=16`. Sixteen ride in the lanes of one vector; fewer cost the

@@ -3,6 +3,17 @@
 use serde::{Deserialize, Serialize};
 
 /// When a run ends.
+///
+/// ```
+/// use fsot::config::Work;
+/// use fsot::{Config, Extent, Until};
+///
+/// let config = Config::new(Extent::still(16, 16), 2);
+/// let soon = config.clone().optimize(Until::Seconds(0.01))?;
+/// let slices_then_sweeps = config.optimize(Until::Work(Work { slices_per_class: 64, sweeps: 8 }))?;
+/// assert_ne!(soon, slices_then_sweeps);
+/// # Ok::<(), fsot::ConfigError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Until {
@@ -37,6 +48,18 @@ pub enum Until {
 /// Slices hold any class and target, and reach the lower bound; sweeps
 /// ([`Optimizer::sweep`](crate::Optimizer::sweep)) take the whole of the objective's directions into account
 /// at once, and are the sooner at a low error.
+///
+/// ```
+/// use fsot::config::Work;
+/// use fsot::{Config, Extent, Optimizer, Until};
+///
+/// let mut optimizer = Optimizer::new(Config::new(Extent::still(16, 16), 2))?;
+/// let report = optimizer.run(Until::Seconds(0.01))?;
+/// // The same table again, on any machine.
+/// let again = Config::new(Extent::still(16, 16), 2).optimize(Until::Work(report.work))?;
+/// assert_eq!(optimizer.into_table(), again);
+/// # Ok::<(), fsot::ConfigError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Work {
     /// Slices per pixel and frame (rounded up to whole steps).
@@ -46,6 +69,16 @@ pub struct Work {
 }
 
 /// How a run ended.
+///
+/// ```
+/// use fsot::config::EndReason;
+/// use fsot::{Config, Extent, Optimizer, Until};
+///
+/// let mut optimizer = Optimizer::new(Config::new(Extent::still(16, 16), 2))?;
+/// let until = Until::Converged { improvement: 0.05, window_steps: 16, at_most: 10_000 };
+/// assert_eq!(optimizer.run(until)?.ended, EndReason::Converged);
+/// # Ok::<(), fsot::ConfigError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EndReason {

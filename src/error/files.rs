@@ -7,6 +7,13 @@ use thiserror::Error;
 use super::ExtentError;
 
 /// A table that cannot be made, read or written.
+///
+/// ```
+/// use fsot::{Extent, SampleTable};
+///
+/// let error = SampleTable::new(Extent::still(1, 2), 1, vec![0.5, 1.0]).unwrap_err();
+/// assert!(error.to_string().contains("x 1, sample 0, dim 0] is 1"));
+/// ```
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum TableError {
@@ -63,6 +70,18 @@ pub enum TableError {
 }
 
 /// What is wrong with a file that should hold a table or its metadata.
+///
+/// ```
+/// use fsot::SampleTable;
+/// use fsot::files::{FormatError, TableError};
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("table.npy");
+/// std::fs::write(&path, "no table")?;
+/// let error = SampleTable::load(&path).unwrap_err();
+/// assert!(matches!(error, TableError::Format { problem: FormatError::NotNpy { .. }, .. }));
+/// # Ok::<(), std::io::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum FormatError {

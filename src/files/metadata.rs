@@ -24,6 +24,23 @@ const RANGE: &str = "[0, 1)";
 /// JSON has no NaN and no infinities: where an `f64` of this structure is not finite, the file says `"NaN"`,
 /// `"inf"` or `"-inf"`. Seeds are plain JSON integers of up to 64 bits; readers that keep all numbers as
 /// `f64` (JavaScript) round those above 2^53.
+///
+/// ```
+/// use fsot::files::Metadata;
+/// use fsot::{Config, Extent, Optimizer, SampleTable, Until};
+///
+/// let mut optimizer = Optimizer::new(Config::new(Extent::still(16, 16), 2).with_seed(7))?;
+/// let report = optimizer.run(Until::Sweeps(4))?;
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("table.npy");
+/// optimizer.table().save_with(&path, &optimizer.metadata(&report))?;
+///
+/// let Metadata { seed, configuration, run, .. } = Metadata::load(&path)?;
+/// assert_eq!((seed, run.sweeps), (7, 4));
+/// let config: Config = serde_json::from_value(configuration)?;
+/// assert_eq!(&config, optimizer.config());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Metadata {
     /// Kind and version of the file: `fsot sample table 1`.

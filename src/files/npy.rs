@@ -37,6 +37,17 @@ impl SampleTable {
     ///
     /// # Errors
     /// A path that cannot name a table ([`TableError::FileName`]) or cannot be written ([`TableError::Io`]).
+    ///
+    /// ```
+    /// use fsot::{Extent, SampleTable};
+    ///
+    /// let folder = tempfile::tempdir()?;
+    /// let path = folder.path().join("table.npy");
+    /// let table = SampleTable::white_noise(Extent::still(8, 8), 2, 0)?;
+    /// table.save(&path)?;
+    /// assert_eq!(SampleTable::load(&path)?, table);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), TableError> {
         let path = path.as_ref();
         metadata::check_name(path)?;

@@ -25,6 +25,18 @@ use crate::table::extent::Extent;
 ///
 /// The other combination in use, *separate* (a spatial filter in every frame and a temporal filter at every
 /// pixel, Wolfe et al. 2022), is two kernels: [`Kernel::separate`].
+///
+/// ```
+/// use fsot::kernel::{SpatialKernel, TemporalKernel};
+/// use fsot::{Extent, Kernel};
+///
+/// // What temporal antialiasing with a weight of a tenth shows of a box of 3 by 3 pixels.
+/// let space = SpatialKernel::Box { size_px: 3 };
+/// let kernel = Kernel::product(space, TemporalKernel::Ema { alpha: 0.1 });
+/// let taps = kernel.taps(&Extent::animation(64, 32, 32))?;
+/// assert_eq!(taps.iter().filter(|tap| tap.dt == -1).count(), 9);
+/// # Ok::<(), fsot::kernel::KernelError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Kernel {
     /// Weights in space.

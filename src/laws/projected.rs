@@ -30,6 +30,14 @@ use super::pieces::Pieces;
 /// replaced by their mean, which moves `Q` by at most half of their sum. Beyond 16 dimensions only
 /// consistency was tested.
 ///
+/// ```
+/// use fsot::targets::{Projected, Target};
+///
+/// // The sum of two uniforms is a triangle.
+/// let law: Projected = Target::UniformCube.project(&[1.0, 1.0]);
+/// assert_eq!((law.support(), law.mean(), law.cdf(0.5)), ((0.0, 2.0), 1.0, 0.125));
+/// ```
+///
 /// [^boxes]: de Boor, Höllig, Riemenschneider 1993, *Box Splines*, Springer.
 /// [^salaun]: Salaün, Georgiev, Seidel, Singh 2022, "Scalable multi-class sampling via filtered sliced
 ///     optimal transport", ACM TOG 41(6), <https://doi.org/10.1145/3550454.3555484>.

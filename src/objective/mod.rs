@@ -23,6 +23,16 @@ use crate::table::extent::Extent;
 /// Its value is the mean over slices of `(n / N) · W2²(X_S · theta, mu · theta)`: the level-set objective of
 /// Salaün et al. 2022 with the squared 2-Wasserstein distance as the one-dimensional cost, whose gradient
 /// exists.
+///
+/// ```
+/// use fsot::{Config, Extent, Objective};
+///
+/// let objective = Objective::new(&Config::new(Extent::still(8, 8), 2))?;
+/// let points = vec![0.5; 128];
+/// let (value, gradient) = objective.cramer(&points)?;
+/// assert!(value > 0.0 && gradient.iter().all(|slope| slope.is_finite()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Objective {
     pub(crate) extent: Extent,

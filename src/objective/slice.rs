@@ -8,6 +8,18 @@ use crate::laws::distance::Workspace;
 use crate::table::domain::Domain;
 
 /// One random draw of the objective: a class, a level, a direction.
+///
+/// ```
+/// use fsot::objective::Slice;
+/// use fsot::{Config, Extent, Objective};
+///
+/// let objective = Objective::new(&Config::new(Extent::still(2, 2), 1))?;
+/// // All four samples of the first pixel's filter, along their only dimension.
+/// let slice = Slice { term: 0, member: 0, level: 0.0, direction: vec![1.0], cut: vec![0.0] };
+/// let (value, gradient) = objective.value_and_gradient(&[0.1, 0.4, 0.6, 0.9], &[slice])?;
+/// assert!(value > 0.0 && gradient.len() == 4);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slice {
     /// Which term of the objective.

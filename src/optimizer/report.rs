@@ -9,6 +9,19 @@ use crate::sweeps::Sweeper;
 use crate::table::SampleTable;
 
 /// What a step of slices did: see [`Optimizer::step`](crate::Optimizer::step).
+///
+/// ```
+/// use fsot::{Config, Extent, Optimizer};
+///
+/// // A schedule of one's own.
+/// let mut optimizer = Optimizer::new(Config::new(Extent::still(16, 16), 2))?;
+/// let steps: Vec<_> = (0..64).map(|step| optimizer.step(0.95_f64.powi(step), 1.0)).collect();
+/// let mean = |steps: &[fsot::optimizer::SliceStep]| -> f64 {
+///     steps.iter().map(|step| step.displacement).sum::<f64>() / steps.len() as f64
+/// };
+/// assert!(mean(&steps[48..]) < mean(&steps[..16]));
+/// # Ok::<(), fsot::ConfigError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SliceStep {

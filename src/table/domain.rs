@@ -6,6 +6,13 @@ use serde::{Deserialize, Serialize};
 ///
 /// Integrands of a renderer are not periodic, so [`Domain::Interval`] is the default; on a torus the table
 /// may be shifted by any offset per dimension (Cranley–Patterson rotation) without changing its quality.
+///
+/// ```
+/// use fsot::config::Domain;
+///
+/// assert_eq!(Domain::Torus.admit(1.25), 0.25);
+/// assert_eq!(Domain::Interval.admit(-0.1), 0.0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Domain {

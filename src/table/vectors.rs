@@ -6,6 +6,16 @@ use crate::error::GroupError;
 use crate::table::SampleTable;
 
 /// How two coordinates in `[0, 1)` become a vector. All three preserve area, so that uniform stays uniform.
+///
+/// ```
+/// use fsot::targets::VectorMap;
+/// use fsot::{Extent, SampleTable};
+///
+/// let table = SampleTable::white_noise(Extent::still(8, 8), 2, 0)?;
+/// let directions = table.mapped(VectorMap::CosineHemisphere, [0, 1])?;
+/// assert_eq!(directions.shape(), [1, 8, 8, 1, 3]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VectorMap {
     /// The unit disc, by the concentric map[^disc]: two components.

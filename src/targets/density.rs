@@ -11,6 +11,18 @@ use crate::laws::Pieces;
 ///
 /// Distances are measured in the picture: its longer side is 1 long, so that a picture of any aspect ratio
 /// gets an even arrangement of points.
+///
+/// ```
+/// use fsot::targets::Density;
+/// use fsot::{Config, Until};
+///
+/// // Three quarters of the points go to the right.
+/// let density = Density::new(2, 1, vec![1.0, 3.0])?;
+/// let points = Config::stippling(64, density).optimize(Until::SlicesPerClass(512))?;
+/// let right = points.values().chunks_exact(2).filter(|point| point[0] > 0.5).count();
+/// assert!((46..=50).contains(&right));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Unchecked")]
 pub struct Density {

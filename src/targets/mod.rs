@@ -31,6 +31,13 @@ pub use {inks::Inks, picture::Picture, tone::Tone};
 ///
 /// Sliced transport compares samples and target along one direction at a time, so a target is used through
 /// its one-dimensional laws only: see [`Target::project`].
+///
+/// ```
+/// use fsot::targets::Target;
+///
+/// let law = Target::UniformCube.project(&[0.6, 0.8]);
+/// assert!((law.mean() - 0.7).abs() < 1e-12);
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
