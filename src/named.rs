@@ -60,8 +60,8 @@ impl<'de, T: Named + ?Sized> Deserialize<'de> for ByName<T> {
         let name = String::deserialize(deserializer)?;
         let (kind, constructor) = (T::KIND, T::CONSTRUCTOR);
         Err(D::Error::custom(format!(
-            "the {kind} \"{name}\" is code, which no file holds: take its term out of the file, read the rest, and \
-             add the term again with {constructor}"
+            "the {kind} \"{name}\" is code, which no file holds: take its term out of the file, read \
+             the rest, and add the term again with {constructor}"
         )))
     }
 }

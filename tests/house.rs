@@ -1,4 +1,5 @@
-//! The shape of the code: data flows one way, files are short enough to read in one sitting, lines fit the page.
+//! The shape of the code: data flows one way, files are short enough to read in one sitting, lines fit the
+//! page.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

@@ -38,7 +38,8 @@ impl WholeFile {
     /// Writes the contents beside `path` and waits until they have reached the disk.
     ///
     /// # Errors
-    /// A path that names a directory, a device or a pipe, or lies in no directory; whatever stands against writing.
+    /// A path that names a directory, a device or a pipe, or lies in no directory; whatever stands against
+    /// writing.
     pub fn write(
         path: &Path,
         fill: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>,

@@ -237,8 +237,8 @@ fn a_thousand_configurations_agree_with_the_twin() {
         Err(TestCaseError::fail("no draw without near ties"))
     });
     println!(
-        "worst relative error {:.1e}, worst mean pull off by {:.1e}; {} of 1000 tables redrawn for near ties, \
-         without which the worst is {:.1e}",
+        "worst relative error {:.1e}, worst mean pull off by {:.1e}; {} of 1000 tables redrawn for near \
+         ties, without which the worst is {:.1e}",
         relative.get(),
         pull.get(),
         redrawn_cases.get(),
