@@ -79,14 +79,14 @@ pub(crate) trait Filters: Debug + Send + Sync {
 
 /// Filters, and which of them are visited: where only a part of the table is demanded, the rest is left out.
 #[derive(Clone, Debug)]
-pub(crate) struct Family {
+pub(crate) struct FilterFamily {
     filters: Arc<dyn Filters>,
     visited: Option<Arc<[u32]>>,
     /// [`Filters::mean_size`], which may take a look at every class.
     mean_size: f64,
 }
 
-impl Deref for Family {
+impl Deref for FilterFamily {
     type Target = dyn Filters;
 
     fn deref(&self) -> &Self::Target {
@@ -94,7 +94,7 @@ impl Deref for Family {
     }
 }
 
-impl Family {
+impl FilterFamily {
     /// Plans a family.
     ///
     /// # Errors

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 pub use self::custom::{ClassFamily, ClassSamples, CustomClasses};
 pub use self::demand::Demand;
 pub(crate) use self::demand::Wanted;
-pub(crate) use self::family::Family;
+pub(crate) use self::family::FilterFamily;
 pub use self::listed::{LabelSet, Ramp};
 pub use self::prefixes::{PrefixLength, PrefixLengths, PrefixOf};
 pub use crate::error::ClassError;

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::classes::{Family, Wanted};
+use crate::classes::{FilterFamily, Wanted};
 use crate::config::{Role, Slicing, Term};
 use crate::directions::Slicer;
 use crate::directions::banks::Banks;
@@ -18,7 +18,7 @@ use crate::transport::network::Network;
 #[derive(Clone, Debug)]
 pub(crate) struct PlannedTerm {
     pub spec: Term,
-    pub family: Family,
+    pub family: FilterFamily,
     pub slicer: Slicer,
     /// Largest subset that is sorted in lanes; 0 if none is.
     pub longest: usize,
@@ -68,7 +68,7 @@ impl PlannedTerm {
         {
             return Err(TermError::TargetOnTorus { dimension });
         }
-        let family = Family::new(&term.classes, extent, wanted)?;
+        let family = FilterFamily::new(&term.classes, extent, wanted)?;
         if family.visits() == 0 {
             return Ok(None);
         }
