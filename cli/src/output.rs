@@ -52,7 +52,7 @@ pub fn check(outputs: &[Output], inputs: &[&Path]) -> Result<(), Failure> {
 /// Writes a file, which appears whole or not at all.
 ///
 /// # Errors
-/// As [`pending`], in the same words as [`check`].
+/// The path cannot be written; in the same words as by [`check`].
 pub fn write(
     flag: &str,
     path: &Path,
