@@ -1,18 +1,19 @@
 //! The published way to optimise a table, written plainly, to compare with.
 //!
-//! This is the loop of Salaün et al. 2022[^salaun] and Korać et al. 2023[^korac], written from a description of its
-//! mathematics, without sight of their programs. Every slice looks at every sample, and that is what it costs:
+//! This is the loop of Salaün et al. 2022[^salaun] and Korać et al. 2023[^korac], written from a description
+//! of its mathematics, without sight of their programs. Every slice looks at every sample, and that is what
+//! it costs:
 //!
 //! 1. draw a pixel, a level and a direction (70 % of them anywhere, 15 % along each axis);
 //! 2. evaluate the filter, with its exponential, at every sample of the table and keep those above the level;
 //! 3. draw three target points per kept sample from the square, project and sort both;
-//! 4. the sample of rank `i` moves towards the mean of the target points `3i`, `3i + 1`, `3i + 2`: the exact transport
-//!    between the two sets of points, and the least noisy use of three points per sample;
+//! 4. the sample of rank `i` moves towards the mean of the target points `3i`, `3i + 1`, `3i + 2`: the exact
+//!    transport between the two sets of points, and the least noisy use of three points per sample;
 //! 5. write the displacements into a table that is cleared and added up in full.
 //!
-//! A batch of slices makes a step of Adam with constant parameters. Its `epsilon` exceeds the gradient by orders of
-//! magnitude, so that it is gradient descent with momentum in effect. Samples that leave the square are put back on
-//! its border.
+//! A batch of slices makes a step of Adam with constant parameters. Its `epsilon` exceeds the gradient by
+//! orders of magnitude, so that it is gradient descent with momentum in effect. Samples that leave the square
+//! are put back on its border.
 //!
 //! Slices run in parallel, on plain arrays, compiled like the library.
 //!
@@ -29,8 +30,8 @@ use rayon::prelude::*;
 /// Up to which filter weight levels are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Levels {
-    /// The weight of the filtered pixel in the current frame. A kernel that peaks in the past is clipped there: it
-    /// becomes almost a box in time. The published spatio-temporal loop does so.
+    /// The weight of the filtered pixel in the current frame. A kernel that peaks in the past is clipped
+    /// there: it becomes almost a box in time. The published spatio-temporal loop does so.
     CurrentFrame,
     /// The greatest weight.
     Peak,
@@ -49,8 +50,9 @@ pub struct Parameters {
     pub levels: Levels,
     /// Slices per iteration.
     pub batch: usize,
-    /// Step of gradient descent that Adam amounts to: the mean displacement over the slices of a batch, most of which
-    /// hold a given sample not at all, times `gain` is what the sample moves, once its momentum has built up.
+    /// Step of gradient descent that Adam amounts to: the mean displacement over the slices of a batch, most
+    /// of which hold a given sample not at all, times `gain` is what the sample moves, once its momentum has
+    /// built up.
     pub gain: f32,
     /// Names every random number.
     pub seed: u64,

@@ -4,11 +4,10 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-use ndarray::Array2;
-
 use fsot::files::TableError;
 use fsot::metrics::RadialBin;
 use fsot_cli::draw::raster::Grey;
+use ndarray::Array2;
 
 /// An 8-bit gray picture of an array, one pixel per entry: 0 is black, `white` and everything above is white,
 /// linear between. NaN is black.
@@ -51,8 +50,9 @@ pub fn write_radial_csv(path: &Path, bins: &[RadialBin]) -> Result<(), TableErro
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use ndarray::array;
+
+    use super::*;
 
     #[test]
     fn pictures_clip_at_black_and_white_and_come_back_from_disk() {

@@ -17,9 +17,9 @@ pub enum Material {
     },
     /// GGX microfacets[^walter] with height-correlated Smith masking[^heitz] and single scattering.
     ///
-    /// Light that would bounce between facets is lost, so even with `reflectance` 1 a rough lobe reflects less
-    /// than it receives. What is exactly 1 is the *weak* white furnace: the lobe without shadowing, integrated
-    /// over the whole sphere.
+    /// Light that would bounce between facets is lost, so even with `reflectance` 1 a rough lobe reflects
+    /// less than it receives. What is exactly 1 is the *weak* white furnace: the lobe without shadowing,
+    /// integrated over the whole sphere.
     ///
     /// [^walter]: Walter, Marschner, Li, Torrance 2007, "Microfacet models for refraction".
     /// [^heitz]: Heitz 2014, "Understanding the masking-shadowing function", JCGT 3(2).
@@ -151,9 +151,9 @@ mod tests {
 
     #[test]
     fn weak_white_furnace_is_one() {
-        // ∫ G1(o) D(h) / (4 cos o) over the sphere of incoming directions (Heitz 2014, eq. 86): the density of
-        // visible-normal sampling, so this is also its normalisation. The midpoint
-        // rule on 800 x 400 points meets a jump at h·n = 0: its error is of the order of 1/800.
+        // ∫ G1(o) D(h) / (4 cos o) over the sphere of incoming directions (Heitz 2014, eq. 86): the density
+        // of visible-normal sampling, so this is also its normalisation. The midpoint rule on 800 x 400
+        // points meets a jump at h·n = 0: its error is of the order of 1/800.
         for (alpha, cos) in [(0.15, 0.9), (0.5, 0.5), (1.0, 0.2), (1.0, 1.0)] {
             let ggx = Material::Ggx { alpha, reflectance: 1.0 };
             let outgoing = towards(cos);

@@ -28,8 +28,8 @@ pub struct Lens {
 }
 
 impl Camera {
-    /// The ray through the centre of pixel `(y, x)`. With a lens, `lens_uv` (in `[0, 1)²`, mapped to the disc by
-    /// the area-preserving concentric map) says where it starts; a pinhole ignores it.
+    /// The ray through the centre of pixel `(y, x)`. With a lens, `lens_uv` (in `[0, 1)²`, mapped to the disc
+    /// by the area-preserving concentric map) says where it starts; a pinhole ignores it.
     pub fn ray(&self, [y, x]: [usize; 2], [height, width]: [usize; 2], lens_uv: [f64; 2]) -> Ray {
         let forward = (self.target - self.eye).normalize();
         let right = forward.cross(&Vector3::y()).normalize();

@@ -1,14 +1,17 @@
 //! Errors of a rendering as ratios to white noise.
 //!
 //! White noise needs no drawing: samples are independent between pixels, so the expected squared error of a
-//! pixel is `variance / spp`, and after a filter with weights `w` it is `Σ w² variance / spp`. Both come from the
-//! [`Reference`]. At the borders of the image filters are cut off and renormalised: their weights inside sum to 1.
+//! pixel is `variance / spp`, and after a filter with weights `w` it is `Σ w² variance / spp`. Both come from
+//! the
+//! [`Reference`]. At the borders of the image filters are cut off and renormalised: their weights inside sum
+//! to 1.
+
+use fsot::config::RangeError;
+use fsot::kernel::{SpatialKernel, TemporalKernel};
 
 use super::error::RenderError;
 use super::film::Film;
 use super::reference::Reference;
-use fsot::config::RangeError;
-use fsot::kernel::{SpatialKernel, TemporalKernel};
 
 /// Guards relative errors where the reference is dark.
 const EPSILON: f64 = 0.01;
@@ -53,7 +56,8 @@ impl ImageFilter {
         Ok(self)
     }
 
-    /// The filtered film. Only frames with their whole past are kept: `k` temporal taps drop the first `k - 1`.
+    /// The filtered film. Only frames with their whole past are kept: `k` temporal taps drop the first `k -
+    /// 1`.
     ///
     /// # Errors
     /// Fewer frames than temporal taps.
@@ -156,11 +160,12 @@ impl Comparison {
     }
 }
 
-/// Width of the spatial filters of perceptual errors, in pixels (Georgiev and Fajardo 2016; Salaün et al. 2022).
+/// Width of the spatial filters of perceptual errors, in pixels (Georgiev and Fajardo 2016; Salaün et al.
+/// 2022).
 const SIGMA_PX: f64 = 2.1;
 
-/// Compares a rendering of `spp` samples a pixel to the truth. `temporal` filters perceptual errors only, and they
-/// are taken over the frames that have their whole past.
+/// Compares a rendering of `spp` samples a pixel to the truth. `temporal` filters perceptual errors only, and
+/// they are taken over the frames that have their whole past.
 ///
 /// # Errors
 /// Different shapes; 0 samples; a temporal kernel out of range or longer than the film.

@@ -1,11 +1,11 @@
 //! A minimal renderer that tells whether a table makes pictures better.
 //!
 //! It sees samplers only, never how a table was made. A [`Scene`] is a plain value; [`render`] asks a
-//! [`Sampler`](crate::samplers::Sampler) for the numbers and gives a [`Film`]; a [`Reference`] holds the truth with
-//! its own error; [`compare`] gives the errors as ratios to white noise.
+//! [`Sampler`](crate::samplers::Sampler) for the numbers and gives a [`Film`]; a [`Reference`] holds the
+//! truth with its own error; [`compare`] gives the errors as ratios to white noise.
 //!
-//! One ray a pixel goes through the pixel's centre (a thin lens spreads it), so the only noise is the integrand's;
-//! edges are aliased, on purpose. Luminance only, no textures, no acceleration structure.
+//! One ray a pixel goes through the pixel's centre (a thin lens spreads it), so the only noise is the
+//! integrand's; edges are aliased, on purpose. Luminance only, no textures, no acceleration structure.
 
 mod bsdf;
 mod camera;

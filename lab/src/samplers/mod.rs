@@ -1,15 +1,16 @@
 //! Who hands a renderer its random numbers.
 //!
-//! A [`Sampler`] is asked by (frame, pixel, sample, dimension), in any order and from any thread, and always gives
-//! the same answer to the same question (the contract of pbrt-v4's samplers, without their hidden state). It is not
-//! told how many samples there will be; where a number of samples was chosen beforehand, fewer of them are a worse set.
+//! A [`Sampler`] is asked by (frame, pixel, sample, dimension), in any order and from any thread, and always
+//! gives the same answer to the same question (the contract of pbrt-v4's samplers, without their hidden
+//! state). It is not told how many samples there will be; where a number of samples was chosen beforehand,
+//! fewer of them are a worse set.
 //!
 //! * [`TableSampler`] reads an optimised [`SampleTable`];
 //! * [`WhiteNoise`] is plain Monte Carlo, the yardstick of every ratio;
 //! * [`OwenSobol`] is the strongest sampler that knows nothing of its neighbours.
 //!
-//! The samplers of the literature that filtered sliced optimal transport is compared with are here as well, each from
-//! its paper's description. Most are recipes for a table:
+//! The samplers of the literature that filtered sliced optimal transport is compared with are here as well,
+//! each from its paper's description. Most are recipes for a table:
 //!
 //! | recipe | arranges | after |
 //! |---|---|---|
@@ -21,8 +22,8 @@
 //! | [`Stbn`] | unlike values in space and in time | Wolfe et al. 2022 |
 //! | [`Fast`] | the energy distance under a filter | Donnelly et al. 2024 |
 //!
-//! The same seed gives the same table at any number of threads. Across platforms, exponentials and powers of the standard
-//! library may round differently, and annealing amplifies that.
+//! The same seed gives the same table at any number of threads. Across platforms, exponentials and powers of
+//! the standard library may round differently, and annealing amplifies that.
 
 mod anneal;
 mod dither;
@@ -51,14 +52,13 @@ pub use stratified::stratified;
 pub use table::TableSampler;
 pub use white::WhiteNoise;
 
-use fsot::SampleTable;
 use fsot::config::RangeError;
-use fsot::{Extent, Site};
+use fsot::{Extent, SampleTable, Site};
 
 /// Random numbers of a renderer, as a pure function of where they are used.
 pub trait Sampler: Sync {
-    /// Coordinate `dim` of sample `sample` at this site, in `[0, 1)`. All indices are unbounded: frame, row and
-    /// column may lie outside a table's tile.
+    /// Coordinate `dim` of sample `sample` at this site, in `[0, 1)`. All indices are unbounded: frame, row
+    /// and column may lie outside a table's tile.
     fn sample(&self, site: Site, sample: u32, dim: u32) -> f32;
 
     /// Coordinates `dim` and `dim + 1`, equal to two calls of [`sample`](Self::sample).

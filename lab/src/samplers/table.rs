@@ -1,14 +1,15 @@
 //! A sample table as a renderer reads it: tiled over the image and the animation.
 
+use fsot::{Extent, SampleTable, Site};
+
 use super::{Sampler, WhiteNoise, mixed};
-use fsot::SampleTable;
-use fsot::{Extent, Site};
 
 /// Reads an optimised table at pixel `(x mod width, y mod height)` of frame `t mod frames`.
 ///
 /// What the table does not hold is filled in, and costs quality, never correctness:
 /// * samples beyond the table's `spp` come from the same table displaced by whole pixels. Block `k` of `spp`
-///   samples is shifted by the `k`-th point of the R2 sequence[^r2], so each block alone keeps its blue noise;
+///   samples is shifted by the `k`-th point of the R2 sequence[^r2], so each block alone keeps its blue
+///   noise;
 /// * dimensions beyond the table's are white noise.
 ///
 /// [^r2]: Roberts 2018, "The unreasonable effectiveness of quasirandom sequences", extremelearning.com.au.
@@ -25,7 +26,8 @@ impl<'t> TableSampler<'t> {
         Self { table, offset: Site { frame: 0, y: 0, x: 0 }, beyond: WhiteNoise::new(0x7ab1e) }
     }
 
-    /// The table displaced: the origin reads the table's pixel `offset`. Another realisation of the same noise.
+    /// The table displaced: the origin reads the table's pixel `offset`. Another realisation of the same
+    /// noise.
     pub fn shifted(mut self, offset: Site) -> Self {
         let Extent { frames, height, width, .. } = self.table.extent();
         self.offset = Site { frame: offset.frame % frames, y: offset.y % height, x: offset.x % width };

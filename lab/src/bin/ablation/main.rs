@@ -5,9 +5,9 @@
 //! cargo run --release -p fsot-lab --bin ablation -- schedule                                                # prints some of it
 //! ```
 //!
-//! Choices that don't change the cost of a slice are compared at equal slices, the others at equal time: that of the
-//! defaults, as told by short runs of both right before each. Tables are measured as in the README; all figures are ratios to white noise of the
-//! same shape.
+//! Choices that don't change the cost of a slice are compared at equal slices, the others at equal time: that
+//! of the defaults, as told by short runs of both right before each. Tables are measured as in the README;
+//! all figures are ratios to white noise of the same shape.
 //!
 //! With `--quick` everything runs once on small tables and is checked.
 
@@ -20,9 +20,10 @@ use std::fs;
 use std::path::PathBuf;
 
 use clap::Parser;
-use factors::{Effort, Factor, Making, Variant};
 use fsot::{Config, Extent, Optimizer, SampleTable, Until};
 use fsot_lab::judge::{Judge, Quality};
+
+use crate::factors::{Effort, Factor, Making, Variant};
 
 type Failure = Box<dyn std::error::Error + Send + Sync>;
 

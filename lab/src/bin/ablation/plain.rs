@@ -1,7 +1,7 @@
 //! Choices that the engine does not offer: what a sample moves towards, and how slices are drawn.
 //!
-//! A plain loop in `f64`: the barycentric descent with the default schedule on the slices of [`Objective::draw`], one
-//! after the other.
+//! A plain loop in `f64`: the barycentric descent with the default schedule on the slices of
+//! [`Objective::draw`], one after the other.
 
 use std::fmt::Write;
 
@@ -9,12 +9,12 @@ use fsot::config::{BELOW_ONE, Role};
 use fsot::objective::Slice;
 use fsot::targets::Projected;
 use fsot::{Config, Extent, Objective, SampleTable};
+use fsot_lab::judge::{Judge, Quality};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
 
 use crate::{Case, Failure};
-use fsot_lab::judge::{Judge, Quality};
 
 pub const TITLE: &str = "Targets and draws";
 

@@ -4,8 +4,9 @@
 //! cargo run --release --example compare_samplers -- --table a.npy b.npy --scene soft_shadow --spp 1 --out sheet
 //! ```
 //!
-//! Prints the errors as ratios to white noise and writes `SCENE-SPPspp.png`, a contact sheet with a column per
-//! sampler (rendered, filtered, filtered error, error spectrum), and one EXR of the last frame per sampler.
+//! Prints the errors as ratios to white noise and writes `SCENE-SPPspp.png`, a contact sheet with a column
+//! per sampler (rendered, filtered, filtered error, error spectrum), and one EXR of the last frame per
+//! sampler.
 
 mod sheet;
 
@@ -18,7 +19,8 @@ use fsot::{SampleTable, Site};
 use fsot_lab::render::{Comparison, Film, ImageFilter, Reference, Scene, compare, demand, render};
 use fsot_lab::samplers::{OwenSobol, Sampler, TableSampler, WhiteNoise};
 use indicatif::{ProgressBar, ProgressStyle};
-use sheet::{Cell, Sheet};
+
+use crate::sheet::{Cell, Sheet};
 
 /// Render a scene with sample tables, white noise and Owen-scrambled Sobol', and compare their errors.
 #[derive(Parser)]
@@ -245,7 +247,8 @@ fn contact_sheet(
         let pairs = film.values().iter().zip(reference.mean.values());
         Film::new(film.shape(), pairs.map(|(image, truth)| image - truth).collect())
     };
-    // Grey is no error; the ends are three standard deviations of filtered white noise, the same for everyone.
+    // Grey is no error; the ends are three standard deviations of filtered white noise, the same for
+    // everyone.
     let white = filter.apply_to_variance(&reference.variance)?;
     let mean_variance = white.values().iter().sum::<f64>() / white.values().len() as f64;
     let three = 3.0 * (mean_variance / f64::from(args.spp)).sqrt().max(1e-12);

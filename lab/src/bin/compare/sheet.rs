@@ -1,11 +1,10 @@
 //! A labelled contact sheet: grey pictures in a grid.
 
+use fsot_cli::draw::canvas::{Canvas, LETTER, LINE, MARGIN, grey};
+use fsot_cli::draw::raster::Grey;
 use fsot_lab::render::{Film, RenderError};
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
-
-use fsot_cli::draw::canvas::{Canvas, LETTER, LINE, MARGIN, grey};
-use fsot_cli::draw::raster::Grey;
 
 const ROWS: usize = 4;
 
@@ -95,9 +94,9 @@ impl Sheet {
 /// Power of the error over spatial frequencies, mean over frames, zero frequency in the middle; half of it is
 /// shown, so white noise is mid-grey.
 ///
-/// Errors are first divided by their standard deviation under white noise, else the brightest penumbra would be all
-/// that shows. A hundredth of the mean variance is added, because one rare event in an otherwise quiet pixel would be
-/// many such deviations. A 3 × 3 box calms the speckle of a single image.
+/// Errors are first divided by their standard deviation under white noise, else the brightest penumbra would
+/// be all that shows. A hundredth of the mean variance is added, because one rare event in an otherwise quiet
+/// pixel would be many such deviations. A 3 × 3 box calms the speckle of a single image.
 pub fn spectrum(error: &Film, variance: &Film, spp: u32) -> Result<Vec<f64>, RenderError> {
     let [frames, height, width] = error.shape();
     let mut planner = FftPlanner::new();

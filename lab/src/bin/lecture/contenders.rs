@@ -2,8 +2,9 @@
 
 use fsot::Site;
 use fsot_lab::render::{Film, render, render_frame};
-use fsot_lab::samplers::histogram_sampling;
-use fsot_lab::samplers::{OwenSobol, Pattern, Sampler, SeedPermutation, Shifted, TableSampler, WhiteNoise};
+use fsot_lab::samplers::{
+    OwenSobol, Pattern, Sampler, SeedPermutation, Shifted, TableSampler, WhiteNoise, histogram_sampling,
+};
 
 use crate::Failure;
 use crate::measure::Setting;
@@ -154,8 +155,8 @@ impl Contender {
     }
 }
 
-/// Index 0 leaves tables in place; other indices displace them by the R2 sequence, far from each other for as many as
-/// there are frames.
+/// Index 0 leaves tables in place; other indices displace them by the R2 sequence, far from each other for as
+/// many as there are frames.
 fn displacement(index: u64, tile: usize) -> Site {
     let at = |ratio: f64| ((index as f64 * ratio).fract() * tile as f64) as usize;
     Site { frame: 0, y: at(0.569_840_290_998), x: at(0.754_877_666_247) }

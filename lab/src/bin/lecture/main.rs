@@ -4,10 +4,11 @@
 //! cargo run --release --example lecture -- --out out
 //! ```
 //!
-//! Renders the validation scenes with every sampler at 1, 4, 9 and 16 samples per pixel and prints one table of errors
-//! as ratios to white noise: after the eye's spatial filter, after its spatio-temporal filter, after temporal
-//! antialiasing, after a denoiser. Writes all figures as `lecture.csv`, and contact sheets (noise, spectrum) as PNG.
-//! Ten minutes on two cores; `--quick` shows in half a minute that everything works.
+//! Renders the validation scenes with every sampler at 1, 4, 9 and 16 samples per pixel and prints one table
+//! of errors as ratios to white noise: after the eye's spatial filter, after its spatio-temporal filter,
+//! after temporal antialiasing, after a denoiser. Writes all figures as `lecture.csv`, and contact sheets
+//! (noise, spectrum) as PNG. Ten minutes on two cores; `--quick` shows in half a minute that everything
+//! works.
 
 mod contenders;
 mod measure;
@@ -21,12 +22,13 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::Parser;
-use contenders::Contender;
 use fsot_lab::render::{Film, Scene};
 use indicatif::{ProgressBar, ProgressStyle};
-use measure::{Stage, Trial};
-use report::Report;
-use shelf::Shelf;
+
+use crate::contenders::Contender;
+use crate::measure::{Stage, Trial};
+use crate::report::Report;
+use crate::shelf::Shelf;
 
 type Failure = Box<dyn std::error::Error + Send + Sync>;
 

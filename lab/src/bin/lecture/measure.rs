@@ -39,8 +39,8 @@ impl Stage {
     }
 }
 
-/// The history of temporal antialiasing: an exponential moving average that takes a fifth of every new frame. 16 frames
-/// of it, after which 3 % are left.
+/// The history of temporal antialiasing: an exponential moving average that takes a fifth of every new frame.
+/// 16 frames of it, after which 3 % are left.
 pub fn taa() -> TemporalKernel {
     TemporalKernel::Taps((0..16).map(|back| 0.8_f64.powi(back)).collect())
 }
@@ -74,8 +74,8 @@ pub struct Setting {
     stages: Vec<Smoothed>,
 }
 
-/// A stage: what smooths, the smoothed truth, what white noise of one sample per pixel leaves, and what the reference's own
-/// error does.
+/// A stage: what smooths, the smoothed truth, what white noise of one sample per pixel leaves, and what the
+/// reference's own error does.
 struct Smoothed {
     stage: Stage,
     smoother: Smoother,
@@ -142,9 +142,9 @@ impl Setting {
         Ok(Film::new(film.shape(), pairs.map(|(value, truth)| value - truth).collect())?)
     }
 
-    /// Mean over pixels and frames of the smoothed error, squared and relative to the smoothed truth, over that of white
-    /// noise. The smoothers are linear, so their own blur does not count; what the reference's own error is expected to
-    /// add is taken off.
+    /// Mean over pixels and frames of the smoothed error, squared and relative to the smoothed truth, over
+    /// that of white noise. The smoothers are linear, so their own blur does not count; what the reference's
+    /// own error is expected to add is taken off.
     pub fn ratios(&self, film: &Film, spp: u32) -> Result<Vec<(Stage, f64)>, Failure> {
         let error = self.error(film)?;
         let ratio = |Smoothed { stage, smoother, truth, white, floor }: &Smoothed| {

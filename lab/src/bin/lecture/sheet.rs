@@ -1,14 +1,14 @@
 //! Contact sheets: what every sampler rendered, what is left after the filter, and the spectrum of its error.
 
 use fsot::metrics::Spectra;
+use fsot_cli::draw::canvas::{Canvas, LINE, MARGIN, grey};
+use fsot_cli::draw::raster::Grey;
 use fsot_lab::render::{Film, ImageFilter};
 use ndarray::ArrayView3;
 
 use crate::Failure;
 use crate::contenders::Contender;
 use crate::measure::Setting;
-use fsot_cli::draw::canvas::{Canvas, LINE, MARGIN, grey};
-use fsot_cli::draw::raster::Grey;
 
 /// Least width of a picture on the sheet: room for every name.
 const SIDE: usize = 352;
@@ -65,8 +65,9 @@ pub fn draw(setting: &Setting, spp: u32, shown: &[(Contender, Film, f64)]) -> Re
     Ok(out.into_picture())
 }
 
-/// Power over spatial frequencies, 1 for white noise, calmed by a 3 × 3 box. Errors are first divided by their standard
-/// deviation under white noise, with a hundredth of the mean variance added, else the noisiest pixels are all that shows.
+/// Power over spatial frequencies, 1 for white noise, calmed by a 3 × 3 box. Errors are first divided by
+/// their standard deviation under white noise, with a hundredth of the mean variance added, else the noisiest
+/// pixels are all that shows.
 fn spectrum(error: &Film, variance: &Film, spp: u32) -> Result<Vec<f64>, Failure> {
     let variances = variance.values();
     let count = variances.len() as f64;

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
+use fsot_lab::judge::Quality;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use crate::{Curve, Failure, Outcome, Point};
-use fsot_lab::judge::Quality;
 
 const PANEL: (u32, u32) = (460, 340);
 const FONT: &str = "sans-serif";

@@ -6,11 +6,11 @@
 //! cargo run --release -p fsot-lab --bin race -- --published-seconds 1000
 //! ```
 //!
-//! Ours make a new table for each budget, since their steps shrink over a run; budgets are doublings of the work, and
-//! what is plotted is the measured time of the steps ([`fsot::RunReport::elapsed`]), the median of three interleaved
-//! runs where they are short. The published loop has no schedule: one run with checkpoints is all of its curve. Its
-//! time excludes the measuring as well. Both use all cores. Tables are measured as in the README: ratios to white
-//! noise of the same shape.
+//! Ours make a new table for each budget, since their steps shrink over a run; budgets are doublings of the
+//! work, and what is plotted is the measured time of the steps ([`fsot::RunReport::elapsed`]), the median of
+//! three interleaved runs where they are short. The published loop has no schedule: one run with checkpoints
+//! is all of its curve. Its time excludes the measuring as well. Both use all cores. Tables are measured as
+//! in the README: ratios to white noise of the same shape.
 //!
 //! With `--quick` everything runs once on small tables and is checked.
 
@@ -24,12 +24,13 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use cases::Case;
 use clap::Parser;
 use fsot::Config;
 use fsot_lab::judge::{Judge, Quality};
 use fsot_lab::published::{Levels, Published};
-use methods::{Effort, METHODS, Method};
+
+use crate::cases::Case;
+use crate::methods::{Effort, METHODS, Method};
 
 type Failure = Box<dyn std::error::Error>;
 

@@ -1,7 +1,8 @@
 //! How much sooner ours are at equal error.
 
-use crate::{Curve, Outcome, Point};
 use fsot_lab::judge::Quality;
+
+use crate::{Curve, Outcome, Point};
 
 /// A figure of merit.
 type Figure = fn(&Quality) -> f64;

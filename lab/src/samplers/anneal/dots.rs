@@ -1,7 +1,7 @@
 //! Energies that are inner products of vectors, `Σ w(p − q) v_p · v_q`: the least is where neighbours cancel.
 //!
-//! The weighted sum of the neighbours' vectors is kept for every movable site, so a proposed swap costs one pass over
-//! the vectors and an accepted one updates the sums around.
+//! The weighted sum of the neighbours' vectors is kept for every movable site, so a proposed swap costs one
+//! pass over the vectors and an accepted one updates the sums around.
 
 use pulp::{Arch, NullaryFnOnce};
 

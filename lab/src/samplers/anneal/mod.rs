@@ -1,12 +1,14 @@
 //! Simulated annealing over swaps: which value stands at which site.
 //!
-//! The compared samplers that are tables (Georgiev and Fajardo 2016, Wolfe et al. 2022, Donnelly et al. 2024, Heitz et
-//! al. 2019) all fix a set of values and look for the arrangement with the least energy `Σ w(p − q) E(v_p, v_q)`. Here
-//! is what they share: the acceptance rule, the cooling, and regions that are annealed side by side.
+//! The compared samplers that are tables (Georgiev and Fajardo 2016, Wolfe et al. 2022, Donnelly et al. 2024,
+//! Heitz et al. 2019) all fix a set of values and look for the arrangement with the least energy `Σ w(p − q)
+//! E(v_p, v_q)`. Here is what they share: the acceptance rule, the cooling, and regions that are annealed
+//! side by side.
 //!
-//! A round places disjoint regions at a random offset, farther apart than the energy reaches. Each is copied with
-//! its surroundings into a [`Patch`], annealed there, and copied back: no region sees another at work, so the result
-//! depends on the seed alone and not on the number of threads. Values only move within their frame.
+//! A round places disjoint regions at a random offset, farther apart than the energy reaches. Each is copied
+//! with its surroundings into a [`Patch`], annealed there, and copied back: no region sees another at work,
+//! so the result depends on the seed alone and not on the number of threads. Values only move within their
+//! frame.
 
 mod dots;
 mod neighbours;
@@ -21,10 +23,11 @@ pub(super) use dots::Dots;
 pub(super) use neighbours::{Neighbours, autocorrelation};
 pub(super) use pairs::{Law, Pairs};
 
-use crate::random::{self, Purpose};
-use crate::samplers::SamplerError;
 use fsot::Extent;
 use fsot::config::RangeError;
+
+use crate::random::{self, Purpose};
+use crate::samplers::SamplerError;
 
 /// Exponential cooling: the temperature `c_k` falls from `start` to `end` by equal factors.
 ///
@@ -225,8 +228,8 @@ pub(super) fn nets(extent: &Extent, dims: usize, seed: u64) -> Vec<f32> {
     values
 }
 
-/// `e^x` for `x ≤ 0` to 3e-7 relative, from additions and multiplications only: vectors of it need no library, and it
-/// has the same bits everywhere.
+/// `e^x` for `x ≤ 0` to 3e-7 relative, from additions and multiplications only: vectors of it need no
+/// library, and it has the same bits everywhere.
 #[inline(always)]
 pub(super) fn exp(x: f32) -> f32 {
     // Adding 1.5 · 2²³ rounds to the nearest integer and leaves it in the low bits.

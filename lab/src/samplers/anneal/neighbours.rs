@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use super::LANES;
-use crate::samplers::SamplerError;
 use fsot::Extent;
 use fsot::kernel::{Kernel, Tap};
+
+use super::LANES;
+use crate::samplers::SamplerError;
 
 /// Weights of the neighbours of a site on a lattice that wraps: symmetric, without the site itself.
 #[derive(Clone, Debug)]
@@ -20,8 +21,8 @@ pub(in crate::samplers) struct Neighbours {
 pub(in crate::samplers) type Weights = BTreeMap<(i32, i32, i32), f64>;
 
 impl Neighbours {
-    /// The sum of the taps of kernels, each relative to its own largest, down to their truncations. Temporal parts
-    /// count both ways.
+    /// The sum of the taps of kernels, each relative to its own largest, down to their truncations. Temporal
+    /// parts count both ways.
     pub fn of_kernels(kernels: &[Kernel], extent: &Extent) -> Result<Self, SamplerError> {
         let mut weights = Weights::new();
         for kernel in kernels {
@@ -90,15 +91,16 @@ pub(in crate::samplers) struct Run {
 }
 
 impl Run {
-    /// Where the first lane stands, from the site, in a patch of so many frames of `size` with rows of `stride`.
+    /// Where the first lane stands, from the site, in a patch of so many frames of `size` with rows of
+    /// `stride`.
     pub fn offset(&self, frame: usize, frames: usize, size: usize, stride: usize) -> isize {
         let other = (frame as i32 + self.dt).rem_euclid(frames as i32) as isize;
         (other - frame as isize) * size as isize + self.dy as isize * stride as isize + self.dx
     }
 }
 
-/// `Σ_k (f_k ⋆ f_k)`, the autocorrelations of kernels whose weights are scaled to sum to 1, on the torus; then scaled
-/// so that the largest weight of a neighbour is 1.
+/// `Σ_k (f_k ⋆ f_k)`, the autocorrelations of kernels whose weights are scaled to sum to 1, on the torus;
+/// then scaled so that the largest weight of a neighbour is 1.
 pub(in crate::samplers) fn autocorrelation(
     kernels: &[Kernel],
     extent: &Extent,

@@ -1,7 +1,8 @@
 //! Energies that depend on the distance of two values, `Σ w(p − q) E(‖v_p − v_q‖)`.
 //!
-//! The energy of every movable site with its own value is kept, so a proposed swap costs two passes over neighbours,
-//! sixteen at a time, and an accepted one four more. Plain arrays; the compiler makes them vectors.
+//! The energy of every movable site with its own value is kept, so a proposed swap costs two passes over
+//! neighbours, sixteen at a time, and an accepted one four more. Plain arrays; the compiler makes them
+//! vectors.
 
 use pulp::{Arch, NullaryFnOnce};
 
