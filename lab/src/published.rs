@@ -27,6 +27,8 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
 
+use crate::random::GOLDEN;
+
 /// Up to which filter weight levels are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Levels {
@@ -208,9 +210,6 @@ impl Published {
         }
     }
 }
-
-/// 2⁶⁴ over the golden ratio: consecutive multiples are far apart.
-const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
 impl Workspace {
     fn new(coordinates: usize) -> Self {

@@ -7,7 +7,7 @@ use fsot::config::RangeError;
 use fsot::kernel::{Kernel, SpatialKernel, TemporalKernel};
 use fsot::{Extent, SampleTable};
 
-use super::anneal::{self, Cooling, Law, Neighbours, Pairs, autocorrelation};
+use super::anneal::{self, Cooling, Law, Neighbours, Pairs};
 use crate::samplers::SamplerError;
 
 /// How a filter-adapted table is made.
@@ -65,7 +65,7 @@ impl Fast {
             let expected = "of at least 1";
             return Err(RangeError::new("the number of kernels", 0.0, expected).into());
         }
-        let neighbours = Neighbours::new(&autocorrelation(kernels, extent)?, extent, 1e-3);
+        let neighbours = Neighbours::of_autocorrelations(kernels, extent, 1e-3)?;
         let values = anneal::nets(extent, *dims, *seed);
         let mut ids = anneal::shuffled(extent, *seed);
         let model = Pairs::new(&values, *dims, Law::Distance, &neighbours);

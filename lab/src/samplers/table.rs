@@ -2,7 +2,7 @@
 
 use fsot::{Extent, SampleTable, Site};
 
-use super::{Sampler, WhiteNoise, mixed};
+use super::{Sampler, WhiteNoise, displacement, mixed};
 
 /// Reads an optimised table at pixel `(x mod width, y mod height)` of frame `t mod frames`.
 ///
@@ -37,24 +37,17 @@ impl<'t> TableSampler<'t> {
     }
 }
 
-/// The `block`-th point of R2 in whole pixels; block 0 stays where it is.
-fn displacement(block: u32, len: usize, ratio: f64) -> usize {
-    ((f64::from(block) * ratio).fract() * len as f64) as usize
-}
-
 impl Sampler for TableSampler<'_> {
     fn sample(&self, site: Site, sample: u32, dim: u32) -> f32 {
         if dim as usize >= self.table.dims() {
             return self.beyond.sample(site, sample, dim);
         }
-        // 1/g and 1/g² of the plastic number g = 1.3247…
-        const R2: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
         let Extent { frames, height, width, spp } = self.table.extent();
-        let block = (sample as usize / spp) as u32;
+        let Site { y, x, .. } = displacement((sample as usize / spp) as u64, [height, width]);
         let site = Site {
             frame: site.frame % frames + self.offset.frame,
-            y: site.y % height + self.offset.y + displacement(block, height, R2[1]),
-            x: site.x % width + self.offset.x + displacement(block, width, R2[0]),
+            y: site.y % height + self.offset.y + y,
+            x: site.x % width + self.offset.x + x,
         };
         self.table.sample(site, sample as usize % spp)[dim as usize]
     }
