@@ -2,7 +2,9 @@
 //! literature, the published loop, and what the programs `lecture`, `ablation`, `race` and `compare` share.
 
 pub mod draw;
+pub mod figures;
 pub mod judge;
+pub mod program;
 pub mod published;
 mod random;
 pub mod render;

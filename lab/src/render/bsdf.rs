@@ -3,8 +3,9 @@
 //! Directions are unit vectors in a frame whose third axis is the surface normal and point away from the
 //! surface; both have positive third components, else nothing is reflected.
 
-use std::f64::consts::{FRAC_1_PI, FRAC_PI_4, TAU};
+use std::f64::consts::{FRAC_1_PI, TAU};
 
+use fsot::targets::VectorMap;
 use nalgebra::{Matrix3, Vector3};
 
 /// What a surface does with light.
@@ -99,21 +100,9 @@ fn lambda(direction: &Vector3<f64>, alpha: f64) -> f64 {
     ((1.0 + alpha * alpha * tan_sq).sqrt() - 1.0) / 2.0
 }
 
-/// The unit square onto the unit disc, preserving area and neighbourhood (Shirley and Chiu 1997).
-pub fn concentric_disc([u, v]: [f64; 2]) -> [f64; 2] {
-    let (a, b) = (2.0 * u - 1.0, 2.0 * v - 1.0);
-    if a == 0.0 && b == 0.0 {
-        return [0.0, 0.0];
-    }
-    let (r, phi) =
-        if a.abs() > b.abs() { (a, FRAC_PI_4 * (b / a)) } else { (b, 2.0 * FRAC_PI_4 - FRAC_PI_4 * (a / b)) };
-    [r * phi.cos(), r * phi.sin()]
-}
-
 /// A direction above the surface with density cos θ / π.
 pub fn cosine_hemisphere(uv: [f64; 2]) -> Vector3<f64> {
-    let [x, y] = concentric_disc(uv);
-    Vector3::new(x, y, (1.0 - x * x - y * y).max(0.0).sqrt())
+    VectorMap::CosineHemisphere.vector(uv).into()
 }
 
 /// A rotation whose columns are two tangents and the unit normal (Duff et al. 2017).

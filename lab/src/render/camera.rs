@@ -1,8 +1,8 @@
 //! Pinhole and thin-lens cameras.
 
+use fsot::targets::VectorMap;
 use nalgebra::{Point3, Vector3};
 
-use super::bsdf::concentric_disc;
 use super::shape::Ray;
 
 /// A camera with square pixels; image row 0 is at the top.
@@ -42,7 +42,7 @@ impl Camera {
         match self.lens {
             None => Ray { origin: self.eye, direction: direction.normalize() },
             Some(lens) => {
-                let [a, b] = concentric_disc(lens_uv).map(|c| c * lens.radius);
+                let [a, b, _] = VectorMap::Disc.vector(lens_uv).map(|c| c * lens.radius);
                 let origin = self.eye + right * a + up * b;
                 // `direction` has depth 1, so the focused point lies `focus_distance` of it away.
                 let focused = self.eye + direction * lens.focus_distance;

@@ -6,7 +6,7 @@ use std::time::Instant;
 use fsot::config::BELOW_ONE;
 use fsot::{Optimizer, SampleTable, Until};
 
-use crate::Failure;
+use crate::case::Failure;
 
 /// Follows the configured schedules and returns the mean of the tables after the last steps, a `share` of
 /// all; and the slices per class and the seconds.

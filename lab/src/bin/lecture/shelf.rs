@@ -10,7 +10,8 @@ use fsot::kernel::{SpatialKernel, TemporalKernel};
 use fsot::{Config, Extent, Kernel, Optimizer, SampleTable, Until};
 use fsot_lab::samplers::{DitherMask, Fast, ScramblingKeys, Stbn, stratified};
 
-use crate::{Failure, Scale, measure, scene};
+use crate::scale::Scale;
+use crate::{Failure, measure, scene};
 
 /// What a table is made by.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -4,6 +4,7 @@ use fsot::Extent;
 use fsot::kernel::TemporalKernel;
 use fsot_lab::published::{Levels, Parameters};
 
+#[derive(Clone, Debug)]
 pub struct Case {
     pub name: &'static str,
     pub extent: Extent,

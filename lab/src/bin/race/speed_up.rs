@@ -2,7 +2,7 @@
 
 use fsot_lab::judge::Quality;
 
-use crate::{Curve, Outcome, Point};
+use crate::outcome::{Curve, Outcome, Point};
 
 /// A figure of merit.
 type Figure = fn(&Quality) -> f64;
