@@ -1,4 +1,5 @@
-//! Tables of 16² to 256² pixels and 1 to 64 frames: time per selected sample, which should not grow with the table.
+//! Tables of 16² to 256² pixels and 1 to 64 frames: time per selected sample, which should not grow with the
+//! table.
 //!
 //! `cargo bench --bench size`; the throughput is in selected samples.
 

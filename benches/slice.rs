@@ -1,7 +1,7 @@
 //! A slice: time per selected sample by the size of the subset and the dimensions, on one thread.
 //!
-//! `cargo bench --bench slice`; the throughput is in selected samples: 100 Melem/s are 10 ns each. The kernels are the
-//! nearest `n` pixels with equal weights, so that every slice selects exactly `n` samples.
+//! `cargo bench --bench slice`; the throughput is in selected samples: 100 Melem/s are 10 ns each. The
+//! kernels are the nearest `n` pixels with equal weights, so that every slice selects exactly `n` samples.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use fsot::classes::{Classes, FilterForm};

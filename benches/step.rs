@@ -1,6 +1,8 @@
-//! One step of the optimiser: time per sample that a slice selects, for subsets of a few to a thousand samples.
+//! One step of the optimiser: time per sample that a slice selects, for subsets of a few to a thousand
+//! samples.
 //!
-//! `cargo bench --bench step`; the throughput is in selected samples, the sum of subset sizes over all slices.
+//! `cargo bench --bench step`; the throughput is in selected samples, the sum of subset sizes over all
+//! slices.
 
 #[path = "common/selected.rs"]
 mod selected;

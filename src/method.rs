@@ -2,26 +2,27 @@
 //!
 //! # What it minimises
 //!
-//! Each pixel's *filter* (or class) `w_p` gives the samples around it weights. A level `z` turns the weights into a plain
-//! subset of samples; a direction `theta` turns the subset into numbers; their distance to the projected target is a
-//! problem of sorting. The mean over pixels, levels and directions,
+//! Each pixel's *filter* (or class) `w_p` gives the samples around it weights. A level `z` turns the weights
+//! into a plain subset of samples; a direction `theta` turns the subset into numbers; their distance to the
+//! projected target is a problem of sorting. The mean over pixels, levels and directions,
 //!
 //! ```text
 //! L(X) = E_p ∫₀^{w_max} (|S_z(p)| / N) · E_theta W(X_{S_z(p)}·theta, mu·theta) dz,
 //! ```
 //!
-//! bounds the filtered error of every Lipschitz integrand from above. [`Optimizer`] descends it with a batch of random
-//! slices `(p, z, theta)` per step; [`metrics::Bound`] measures it with exact distances;
+//! bounds the filtered error of every Lipschitz integrand from above. [`Optimizer`] descends it with a batch
+//! of random slices `(p, z, theta)` per step; [`metrics::Bound`] measures it with exact distances;
 //! [`Objective::value_and_gradient`] hands it to an optimiser of your own.
 //!
 //! # All slices at once
 //!
-//! With Cramér's distance in place of Wasserstein's, and weights in place of levels, the mean over *all* directions has a
-//! closed form, the energy distance: see [`Objective::cramer`]. It is the squared filtered error of random half-spaces,
-//! and its exact gradient needs no sorting and no random numbers. A *sweep* ([`Optimizer::sweep`]) moves every sample along
-//! it once. Sweeps are the sooner at any filtered error; slices reach the lower bound, and hold where there is no closed
-//! form (on a torus). [`Until::Seconds`] chooses: sweeps alone if time is short, slices and then sweeps if there is more,
-//! slices alone where sweeps are impossible.
+//! With Cramér's distance in place of Wasserstein's, and weights in place of levels, the mean over *all*
+//! directions has a closed form, the energy distance: see [`Objective::cramer`]. It is the squared filtered
+//! error of random half-spaces, and its exact gradient needs no sorting and no random numbers. A *sweep*
+//! ([`Optimizer::sweep`]) moves every sample along it once. Sweeps are the sooner at any filtered error;
+//! slices reach the lower bound, and hold where there is no closed form (on a torus). [`Until::Seconds`]
+//! chooses: sweeps alone if time is short, slices and then sweeps if there is more, slices alone where sweeps
+//! are impossible.
 //!
 //! | symbol | here | shape, unit |
 //! |---|---|---|
@@ -36,11 +37,11 @@
 //!
 //! # Where it deviates from the papers
 //!
-//! * A sample moves towards the exact *mean of its quantile cell*, not towards a random point of the target: the
-//!   gradient has no noise but that of the slices.
-//! * Tables are *unbiased* by default. The published objective pulls samples to the middle of the square, since a filter
-//!   often holds a single one; a few slices of the whole table and of whole frames after each step
-//!   ([`Role::Balance`]) remove this.
+//! * A sample moves towards the exact *mean of its quantile cell*, not towards a random point of the target:
+//!   the gradient has no noise but that of the slices.
+//! * Tables are *unbiased* by default. The published objective pulls samples to the middle of the square,
+//!   since a filter often holds a single one; a few slices of the whole table and of whole frames after each
+//!   step ([`Role::Balance`]) remove this.
 //! * Levels reach the true maximum of the filter, also where a temporal kernel peaks in the past.
 //! * Domains end like intervals by default, since integrands do; [`Domain::Torus`] per dimension on request.
 //!
@@ -55,14 +56,15 @@
 //! [`Role::Balance`]: crate::config::Role::Balance
 //! [`SampleTable`]: crate::SampleTable
 //! [`Site`]: crate::Site
-//! [`Slice::direction`]: crate::Slice::direction
-//! [`Slice::level`]: crate::Slice::level
+//! [`Slice::direction`]: crate::objective::Slice::direction
+//! [`Slice::level`]: crate::objective::Slice::level
 //! [`Target`]: crate::targets::Target
 //! [`Term`]: crate::config::Term
 //! [`Until::Seconds`]: crate::Until::Seconds
 //! [`metrics::Bound`]: crate::metrics::Bound
 //!
-//! [^salaun]: Salaün, Georgiev, Seidel, Singh 2022, "Scalable multi-class sampling via filtered sliced optimal transport",
-//!     ACM TOG 41(6), <https://doi.org/10.1145/3550454.3555484>.
-//! [^korac]: Korać, Salaün, Georgiev, Grittmann, Slusallek, Myszkowski, Singh 2023, "Perceptual error optimization for Monte
-//!     Carlo animation rendering", SIGGRAPH Asia, <https://doi.org/10.1145/3610548.3618146>.
+//! [^salaun]: Salaün, Georgiev, Seidel, Singh 2022, "Scalable multi-class sampling via filtered sliced
+//!     optimal transport", ACM TOG 41(6), <https://doi.org/10.1145/3550454.3555484>.
+//! [^korac]: Korać, Salaün, Georgiev, Grittmann, Slusallek, Myszkowski, Singh 2023, "Perceptual error
+//!     optimization for Monte Carlo animation rendering", SIGGRAPH Asia,
+//!     <https://doi.org/10.1145/3610548.3618146>.

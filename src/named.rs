@@ -19,8 +19,9 @@ pub trait Named: Debug + Send + Sync {
 
 /// A caller's own code behind a shared pointer.
 ///
-/// It is serialised as its name. Code cannot be read back from a name, so that deserialising it is an error that says so:
-/// read the rest of the configuration and put the code in again. Two are equal if they are the same object.
+/// It is serialised as its name. Code cannot be read back from a name, so that deserialising it is an error
+/// that says so: read the rest of the configuration and put the code in again. Two are equal if they are the
+/// same object.
 #[derive(Debug)]
 pub struct ByName<T: ?Sized>(Arc<T>);
 
@@ -59,8 +60,8 @@ impl<'de, T: Named + ?Sized> Deserialize<'de> for ByName<T> {
         let name = String::deserialize(deserializer)?;
         let (kind, constructor) = (T::KIND, T::CONSTRUCTOR);
         Err(D::Error::custom(format!(
-            "the {kind} \"{name}\" is code, which no file holds: take its term out of the file, read the rest, and add the \
-             term again with {constructor}"
+            "the {kind} \"{name}\" is code, which no file holds: take its term out of the file, read \
+             the rest, and add the term again with {constructor}"
         )))
     }
 }

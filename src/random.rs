@@ -1,8 +1,8 @@
 //! Random numbers named by where they are used, never by which thread drew them.
 //!
-//! Every consumer asks for the generator of its own `(seed, purpose, step, index)`. The four numbers are mixed
-//! into the 256-bit state of a xoshiro256++ with SplitMix64's finaliser (Steele, Lea and Flood 2014, "Fast
-//! splittable pseudorandom number generators"), so generators of neighbouring names are unrelated.
+//! Every consumer asks for the generator of its own `(seed, purpose, step, index)`. The four numbers are
+//! mixed into the 256-bit state of a xoshiro256++ with SplitMix64's finaliser (Steele, Lea and Flood 2014,
+//! "Fast splittable pseudorandom number generators"), so generators of neighbouring names are unrelated.
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -37,6 +37,14 @@ impl From<Purpose> for u64 {
 /// The generator with this name.
 ///
 /// `purpose` keeps what consumers ask for apart; numbers below 1024 are this project's own.
+///
+/// ```
+/// use rand::RngExt;
+///
+/// // Sample 5 of step 3, whoever draws it.
+/// let number: f64 = fsot::random::generator(7, 2000_u64, 3, 5).random();
+/// assert_eq!(number, fsot::random::generator(7, 2000_u64, 3, 5).random::<f64>());
+/// ```
 #[inline]
 pub fn generator(seed: u64, purpose: impl Into<u64>, step: u64, index: u64) -> Xoshiro256PlusPlus {
     let mut state = [0_u8; 32];
@@ -69,8 +77,14 @@ pub(crate) fn uniforms(seed: u64, count: usize) -> Vec<f32> {
     (0..count).map(|_| generator.random()).collect()
 }
 
-/// Steps of a Kronecker sequence, `(1/φ, 1/φ², …)` with the root `φ` of `φ^(dims + 1) = φ + 1`: the golden ratio for one
-/// dimension, R2 for two (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
+/// Steps of a Kronecker sequence, `(1/φ, 1/φ², …)` with the root `φ` of `φ^(dims + 1) = φ + 1`: the golden
+/// ratio for one dimension, R2 for two (Roberts 2018, "The unreasonable effectiveness of quasirandom
+/// sequences").
+///
+/// ```
+/// // The golden ratio's, for one dimension.
+/// assert!((fsot::random::kronecker_steps(1)[0] - 0.618_034).abs() < 1e-6);
+/// ```
 pub fn kronecker_steps(dims: usize) -> Vec<f64> {
     // Newton's iteration would do; this contraction cannot leave (1, 2).
     let phi = (0..100).fold(1.5_f64, |phi, _| (1.0 + phi).powf(1.0 / (dims as f64 + 1.0)));

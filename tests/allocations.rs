@@ -4,7 +4,8 @@ use allocation_counter::measure;
 use fsot::config::Work;
 use fsot::{Config, Extent, Optimizer, Until};
 
-/// Allocations of 64 steps and 4 sweeps, after 64 times as many have grown the buffers to the largest subsets.
+/// Allocations of 64 steps and 4 sweeps, after 64 times as many have grown the buffers to the largest
+/// subsets.
 fn allocations(extent: Extent) -> u64 {
     let mut optimizer = Optimizer::new(Config::new(extent, 2)).unwrap();
     let mut work = || {
@@ -48,8 +49,9 @@ fn the_peak_of_a_run_is_a_small_multiple_of_the_table() {
             })
             .bytes_max
         });
-        // The table, its pulls (2), the buffers of the whole-table slice (2), and either the sweep's copy (1.2) or the order
-        // of visits (0.5), the draws of a step and what is in flight (2, less of a larger table).
+        // The table, its pulls (2), the buffers of the whole-table slice (2), and either the sweep's copy
+        // (1.2) or the order of visits (0.5), the draws of a step and what is in flight (2, less of a larger
+        // table).
         let multiple = peak as f64 / table;
         assert!(multiple < most, "{slices_per_class} slices, {sweeps} sweeps: {multiple:.2} times the table");
     }

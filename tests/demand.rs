@@ -1,5 +1,5 @@
-//! Only what is demanded is optimised: nothing else moves, nothing demanded is worse for it, and the work shrinks with
-//! the demand.
+//! Only what is demanded is optimised: nothing else moves, nothing demanded is worse for it, and the work
+//! shrinks with the demand.
 
 use fsot::classes::Demand;
 use fsot::config::{Domain, GroupError, Role};
@@ -47,8 +47,8 @@ fn coordinates_that_are_not_demanded_keep_their_bits() {
     }
 }
 
-/// The path for partial demands pads its sorting networks and draws from lists; with everything demanded it must still
-/// do what the direct path does.
+/// The path for partial demands pads its sorting networks and draws from lists; with everything demanded it
+/// must still do what the direct path does.
 #[test]
 fn a_demand_for_everything_changes_nothing() {
     for dims in [2, 4] {

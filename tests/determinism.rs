@@ -1,5 +1,5 @@
-//! The same seed gives the same bits: at any thread count, in pieces, again by the number of slices. And the values
-//! themselves are pinned.
+//! The same seed gives the same bits: at any thread count, in pieces, again by the number of slices. And the
+//! values themselves are pinned.
 
 use std::ops::ControlFlow;
 
@@ -29,8 +29,8 @@ fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(work)
 }
 
-/// Shapes whose steps hold many chunks of subsets, long subsets, several groups, and a table large enough for several
-/// parts.
+/// Shapes whose steps hold many chunks of subsets, long subsets, several groups, and a table large enough for
+/// several parts.
 fn cases() -> Vec<Config> {
     vec![
         config([1, 64, 64, 1], 2, Descent::barycentric(), 1),
@@ -42,8 +42,9 @@ fn cases() -> Vec<Config> {
     ]
 }
 
-/// Subsets that share their sorts between threads: alone, and in flight with others, where a worker that waits for a part of
-/// its sort is lent to another subset. Balanced subsets that are too many to wait, and one that is too large.
+/// Subsets that share their sorts between threads: alone, and in flight with others, where a worker that
+/// waits for a part of its sort is lent to another subset. Balanced subsets that are too many to wait, and
+/// one that is too large.
 #[test]
 fn threads_do_not_change_a_bit_of_large_subsets() {
     // More whole tables in a step than wait with the rest of it.
@@ -254,10 +255,12 @@ fn steps_of_size_zero_leave_the_table() {
     assert_eq!(bits(&optimizer.table()), before);
 }
 
-/// Value stability. When these move, every table does: a "Value-breaking change" that belongs in the CHANGELOG.
+/// Value stability. When these move, every table does: a "Value-breaking change" that belongs in the
+/// CHANGELOG.
 ///
-/// Compared to 1e-4 only, because the sine and cosine of the directions may differ in the last bit between platforms.
-/// Few and small steps, so that such a bit does not grow by the swap of two nearly tied samples. Descent, balance, sweeps.
+/// Compared to 1e-4 only, because the sine and cosine of the directions may differ in the last bit between
+/// platforms. Few and small steps, so that such a bit does not grow by the swap of two nearly tied samples.
+/// Descent, balance, sweeps.
 #[test]
 fn values_are_pinned() {
     let after = |extent, dims, descent, work: &dyn Fn(&mut Optimizer)| {

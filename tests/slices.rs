@@ -1,5 +1,5 @@
-//! The slices that an optimisation draws: every class once an epoch, levels and angles evenly, samples as often as they
-//! weigh.
+//! The slices that an optimisation draws: every class once an epoch, levels and angles evenly, samples as
+//! often as they weigh.
 
 use std::f64::consts::PI;
 
@@ -57,7 +57,8 @@ fn samples_are_selected_as_often_as_they_weigh() {
     // A tap is in the subset where the level is below its weight: a mean over stratified levels.
     for tap in taps {
         let share = slices.chunks(16).filter(|subset| tap.weight > subset[0].level).count() as f64 / subsets;
-        // One stratum per step may fall on either side: an error of at most 1 in the 96 or so subsets of a step.
+        // One stratum per step may fall on either side: an error of at most 1 in the 96 or so subsets of a
+        // step.
         assert!((share - tap.weight).abs() < 1.5 / 90.0, "{tap:?} {share}");
     }
 }

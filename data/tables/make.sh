@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 
 make() {
-    cargo run --release --quiet --example spatiotemporal_table -- --out "data/tables/$1.npy" "${@:2}"
+    cargo run --release --quiet -p fsot-cli -- table --out "data/tables/$1.npy" "${@:2}"
 }
 
 make 64x64x1_1spp_2d --frames 1 --slices-per-class 6000 --sweeps 4000

@@ -7,8 +7,20 @@ use crate::table::extent::{Extent, Site};
 
 /// The part of a table that a renderer reads in earnest.
 ///
-/// A pixel that is *not* demanded has the same value whatever random numbers it is given: background, a visible
-/// light, full shadow. Its samples need no optimisation.
+/// A pixel that is *not* demanded has the same value whatever random numbers it is given: background, a
+/// visible light, full shadow. Its samples need no optimisation.
+///
+/// ```
+/// use fsot::classes::Demand;
+/// use fsot::{Config, Extent, Optimizer, Until};
+///
+/// // The left half of a picture needs dimensions 0 and 1 only.
+/// let pixels = (0..32 * 32).map(|pixel| pixel % 32 < 16).collect();
+/// let demand = Demand::new([1, 32, 32], pixels, vec![vec![0, 1]])?;
+/// assert_eq!((demand.share(), demand.dims()), (0.5, 2));
+/// Optimizer::for_demand(Config::new(Extent::still(32, 32), 4), &demand)?.run(Until::Sweeps(2))?;
+/// # Ok::<(), fsot::ConfigError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Demand {
     frames: usize,
@@ -76,8 +88,8 @@ impl Demand {
         self.count() as f64 / self.pixels.len() as f64
     }
 
-    /// The demand on a smaller table that tiles the image and the animation: a site of the tile is demanded if
-    /// any site that reads it is.
+    /// The demand on a smaller table that tiles the image and the animation: a site of the tile is demanded
+    /// if any site that reads it is.
     ///
     /// # Errors
     /// An empty or oversized tile.
@@ -114,8 +126,8 @@ impl Wanted {
         matches!(self, Wanted::Some(_))
     }
 
-    /// The classes among `members` that hold a demanded site, unless all sites are; `mark(site, holds)` flags those that
-    /// hold the site.
+    /// The classes among `members` that hold a demanded site, unless all sites are; `mark(site, holds)` flags
+    /// those that hold the site.
     pub(super) fn holding(&self, members: usize, mark: impl Fn(usize, &mut [bool])) -> Option<Vec<u32>> {
         let Wanted::Some(flags) = self else { return None };
         let mut holds = vec![false; members];
@@ -123,8 +135,8 @@ impl Wanted {
         Some((0..members as u32).filter(|&member| holds[member as usize]).collect())
     }
 
-    /// Mean size of the visited classes, if it is `mean_size` over all `members` where all is demanded: every wanted site
-    /// is held as often as before, but by fewer classes.
+    /// Mean size of the visited classes, if it is `mean_size` over all `members` where all is demanded: every
+    /// wanted site is held as often as before, but by fewer classes.
     pub(super) fn mean_size(&self, mean_size: f64, members: usize, visited: usize) -> f64 {
         let Wanted::Some(flags) = self else { return mean_size };
         let share = flags.iter().filter(|&&flag| flag).count() as f64 / flags.len() as f64;

@@ -14,7 +14,8 @@ use crate::error::TermError;
 use crate::kernel::Tap;
 use crate::table::extent::Extent;
 
-/// The filters of a family, by the number of the class (its *member*). Each kind of family is a type of its own.
+/// The filters of a family, by the number of the class (its *member*). Each kind of family is a type of its
+/// own.
 pub(crate) trait Filters: Debug + Send + Sync {
     /// Number of classes.
     fn members(&self) -> usize;
@@ -35,10 +36,12 @@ pub(crate) trait Filters: Debug + Send + Sync {
     /// The classes that hold a demanded sample, where some don't.
     fn visited(&self) -> Option<Vec<u32>>;
 
-    /// Samples that a random level of a visited class selects, in the mean; the weighted form counts its support.
+    /// Samples that a random level of a visited class selects, in the mean; the weighted form counts its
+    /// support.
     fn mean_size(&self) -> f64;
 
-    /// Sum of the weights that a random level of a visited class selects, in the mean over classes by emphasis.
+    /// Sum of the weights that a random level of a visited class selects, in the mean over classes by
+    /// emphasis.
     fn mean_mass(&self) -> f64 {
         self.mean_size()
     }
@@ -59,8 +62,8 @@ pub(crate) trait Filters: Debug + Send + Sync {
         None
     }
 
-    /// Writes the numbers of the demanded samples of a class whose weight exceeds `level` (in `[0, 1)`, relative to the
-    /// largest weight) by falling weight.
+    /// Writes the numbers of the demanded samples of a class whose weight exceeds `level` (in `[0, 1)`,
+    /// relative to the largest weight) by falling weight.
     fn select(&self, member: usize, level: f64, samples: &mut Vec<u32>);
 
     /// Whether samples enter with their weights.
@@ -76,14 +79,14 @@ pub(crate) trait Filters: Debug + Send + Sync {
 
 /// Filters, and which of them are visited: where only a part of the table is demanded, the rest is left out.
 #[derive(Clone, Debug)]
-pub(crate) struct Family {
+pub(crate) struct FilterFamily {
     filters: Arc<dyn Filters>,
     visited: Option<Arc<[u32]>>,
     /// [`Filters::mean_size`], which may take a look at every class.
     mean_size: f64,
 }
 
-impl Deref for Family {
+impl Deref for FilterFamily {
     type Target = dyn Filters;
 
     fn deref(&self) -> &Self::Target {
@@ -91,7 +94,7 @@ impl Deref for Family {
     }
 }
 
-impl Family {
+impl FilterFamily {
     /// Plans a family.
     ///
     /// # Errors

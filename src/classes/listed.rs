@@ -9,6 +9,14 @@ use crate::error::{ClassError, RangeError};
 use crate::table::extent::Extent;
 
 /// A class of [`super::Classes::Labelled`].
+///
+/// ```
+/// use fsot::classes::{Classes, LabelSet};
+///
+/// let both = LabelSet { labels: vec![0, 1], weight: 1.0 };
+/// let classes = Classes::Labelled { labels: vec![0, 0, 1].into(), subsets: vec![both] };
+/// # let _ = classes;
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LabelSet {
     /// The labels whose samples it holds.
@@ -18,6 +26,14 @@ pub struct LabelSet {
 }
 
 /// A class of [`super::Classes::Ramps`].
+///
+/// ```
+/// use fsot::classes::{Classes, Ramp};
+///
+/// let coordinates: Vec<f64> = (0..9).map(|sample| f64::from(sample) / 8.0).collect();
+/// let classes = Classes::Ramps { coordinates: coordinates.into(), ramps: vec![Ramp::Rising, Ramp::Falling] };
+/// # let _ = classes;
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Ramp {
@@ -160,7 +176,8 @@ impl Listed {
         &self.samples[list][..count]
     }
 
-    /// Weight that a random level of a class selects, times a factor, in the mean over classes that hold any sample.
+    /// Weight that a random level of a class selects, times a factor, in the mean over classes that hold any
+    /// sample.
     fn mean(&self, factor: impl Fn(usize) -> f64) -> f64 {
         let (mut sum, mut holding) = (0.0, 0);
         for member in 0..self.members() {

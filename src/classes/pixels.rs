@@ -40,8 +40,8 @@ impl Pixels {
         pixels
     }
 
-    /// Sites under the taps of a class whose weight exceeds `level`, demanded or not, in the order of the taps. The
-    /// weighted form has its whole support at any level.
+    /// Sites under the taps of a class whose weight exceeds `level`, demanded or not, in the order of the
+    /// taps. The weighted form has its whole support at any level.
     #[inline(always)]
     fn tapped_sites(&self, member: usize, level: f64) -> impl Iterator<Item = u32> {
         let count = match self.form {

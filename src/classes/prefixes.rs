@@ -10,6 +10,14 @@ use crate::error::ClassError;
 use crate::table::extent::Extent;
 
 /// What is cut short by a prefix.
+///
+/// ```
+/// use fsot::classes::{Classes, PrefixLengths, PrefixOf};
+///
+/// // For renderers that stop early: 1, 2, 4, … samples of each pixel.
+/// let classes = Classes::Prefixes { of: PrefixOf::Pixel, lengths: PrefixLengths::PowersOfTwo };
+/// # let _ = classes;
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PrefixOf {
@@ -20,6 +28,15 @@ pub enum PrefixOf {
 }
 
 /// Lengths of the prefixes, in samples.
+///
+/// ```
+/// use fsot::classes::PrefixLengths;
+/// use fsot::{Config, Until};
+///
+/// let sequence = Config::progressive(64, 2, PrefixLengths::PowersOfTwo).optimize(Until::SlicesPerClass(256))?;
+/// assert_eq!(sequence.values().len(), 2 * 64);
+/// # Ok::<(), fsot::ConfigError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PrefixLengths {
@@ -32,6 +49,14 @@ pub enum PrefixLengths {
 }
 
 /// A prefix among [`PrefixLengths::Given`].
+///
+/// ```
+/// use fsot::classes::{PrefixLength, PrefixLengths};
+///
+/// let [some, all] = [24, 100].map(|length| PrefixLength { length, weight: 1.0 / length as f64 });
+/// let lengths = PrefixLengths::Given(vec![some, all]);
+/// # let _ = lengths;
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PrefixLength {
     /// Samples, from 1 to all.
@@ -64,7 +89,8 @@ impl Prefixes {
             PrefixOf::Table => extent.samples(),
             PrefixOf::Pixel => extent.spp,
         };
-        // The first samples are in all prefixes: the short ones decide about them, and the later samples follow.
+        // The first samples are in all prefixes: the short ones decide about them, and the later samples
+        // follow.
         let weighed = |length: usize| PrefixLength { length, weight: 1.0 / length as f64 };
         let lengths = match lengths {
             PrefixLengths::Every => (1..=block).map(weighed).collect(),

@@ -29,7 +29,7 @@ fn by_definition(taps: &[Tap], member: usize, level: f64) -> Vec<u32> {
 
 #[test]
 fn level_sets_hold_the_samples_above_the_level() {
-    let family = Family::new(&lattice(FilterForm::LevelSets), EXTENT, Wanted::All).unwrap();
+    let family = FilterFamily::new(&lattice(FilterForm::LevelSets), EXTENT, Wanted::All).unwrap();
     let taps = family.taps().unwrap();
     let mut samples = Vec::new();
     for (member, level) in [(0, 0.0), (17, 0.3), (959, 0.5), (500, 0.999), (240, 0.01)] {
@@ -44,7 +44,7 @@ fn level_sets_hold_the_samples_above_the_level() {
 /// E_z |S_z| is the sum of the relative weights; a fine midpoint rule over z is exact to one step per tap.
 #[test]
 fn levels_select_each_tap_as_often_as_it_weighs() {
-    let family = Family::new(&lattice(FilterForm::LevelSets), EXTENT, Wanted::All).unwrap();
+    let family = FilterFamily::new(&lattice(FilterForm::LevelSets), EXTENT, Wanted::All).unwrap();
     let taps = family.taps().unwrap();
     let steps = 20_000;
     let mut hits = vec![0.0; EXTENT.samples()];
@@ -65,7 +65,7 @@ fn levels_select_each_tap_as_often_as_it_weighs() {
 
 #[test]
 fn the_weighted_form_lists_the_support_with_its_weights() {
-    let family = Family::new(&lattice(FilterForm::Weighted), EXTENT, Wanted::All).unwrap();
+    let family = FilterFamily::new(&lattice(FilterForm::Weighted), EXTENT, Wanted::All).unwrap();
     let (mut samples, mut weights) = (Vec::new(), Vec::new());
     family.select(7, 0.9, &mut samples);
     family.weigh(7, &mut weights);
@@ -78,7 +78,7 @@ fn the_weighted_form_lists_the_support_with_its_weights() {
 #[test]
 fn blocks_tile_the_table() {
     for (classes, members) in [(Classes::WholeTable, 1), (Classes::PerFrame, 4), (Classes::PerPixel, 960)] {
-        let family = Family::new(&classes, EXTENT, Wanted::All).unwrap();
+        let family = FilterFamily::new(&classes, EXTENT, Wanted::All).unwrap();
         assert_eq!(family.members(), members);
         let (mut all, mut samples) = (Vec::new(), Vec::new());
         for member in 0..members {
@@ -93,9 +93,9 @@ fn blocks_tile_the_table() {
 fn a_partial_demand_leaves_out_samples_and_the_classes_without_any() {
     let flags: Vec<bool> =
         (0..EXTENT.sites()).map(|site| EXTENT.site(site).frame == 1 && site % 12 < 3).collect();
-    let whole = Family::new(&lattice(FilterForm::LevelSets), EXTENT, Wanted::All).unwrap();
-    let part =
-        Family::new(&lattice(FilterForm::LevelSets), EXTENT, Wanted::Some(flags.clone().into())).unwrap();
+    let whole = FilterFamily::new(&lattice(FilterForm::LevelSets), EXTENT, Wanted::All).unwrap();
+    let part = FilterFamily::new(&lattice(FilterForm::LevelSets), EXTENT, Wanted::Some(flags.clone().into()))
+        .unwrap();
     let (mut all, mut some, mut visited) = (Vec::new(), Vec::new(), Vec::new());
     part.list_visited(&mut visited);
     let mut selected = 0;

@@ -6,14 +6,24 @@ use crate::error::RangeError;
 
 /// How a step moves the samples.
 ///
-/// All three follow the same *pull*: for each coordinate, `d` times its mean displacement along the slices of the step
-/// that held it, in a group of `d` dimensions. That is the negative gradient of the objective, divided by the number of
-/// slices that held the coordinate: its unit is that of a coordinate, whatever the size of the table or the batch.
+/// All three follow the same *pull*: for each coordinate, `d` times its mean displacement along the slices of
+/// the step that held it, in a group of `d` dimensions. That is the negative gradient of the objective,
+/// divided by the number of slices that held the coordinate: its unit is that of a coordinate, whatever the
+/// size of the table or the batch.
+///
+/// ```
+/// use fsot::config::{Descent, Schedule};
+/// use fsot::{Config, Extent};
+///
+/// let slow = Descent::Barycentric { rate: Schedule::cosine(1.0, 0.01) };
+/// let config = Config::new(Extent::still(32, 32), 2).with_descent(slow);
+/// assert_eq!(config.descent.rate().ends(), [1.0, 0.01]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Descent {
-    /// `x ← x + rate · pull`: a fixed point iteration towards the barycentre of the targets (`E[theta thetaᵀ] = I / d`),
-    /// with `rate = 1` as its natural step and nothing to tune.
+    /// `x ← x + rate · pull`: a fixed point iteration towards the barycentre of the targets (`E[theta thetaᵀ]
+    /// = I / d`), with `rate = 1` as its natural step and nothing to tune.
     Barycentric {
         /// Step size; 1 moves to the barycentre of the targets.
         rate: Schedule,
@@ -125,7 +135,8 @@ impl Schedule {
 }
 
 impl Descent {
-    /// Barycentric steps from 2 to 0.03: the default. Overshooting at first gets further than the natural step of 1.
+    /// Barycentric steps from 2 to 0.03: the default. Overshooting at first gets further than the natural
+    /// step of 1.
     pub const fn barycentric() -> Self {
         Descent::Barycentric { rate: Schedule::geometric(2.0, 0.03) }
     }

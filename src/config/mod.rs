@@ -1,6 +1,6 @@
 //! What a caller sets: plain data.
 //!
-//! [`Config`](crate::Config) holds all of it. Its defaults make a good table; `with_…` changes one thing at a time:
+//! [`Config`] holds all of it. Its defaults make a good table; `with_…` changes one thing at a time:
 //!
 //! ```
 //! use fsot::config::{DimensionGroup, Domain};
@@ -70,16 +70,18 @@ pub struct Config {
 }
 
 impl Config {
-    /// The defaults for a table of this extent: interval domains, the spatial Gaussian of the papers (`sigma_px =
-    /// 2.1`), times the perceptual kernel at 60 frames per second if there are several frames, consecutive pairs of
-    /// dimensions and all of them at half their weight, unbiased, barycentric steps of slices.
+    /// The defaults for a table of this extent: interval domains, the spatial Gaussian of the papers
+    /// (`sigma_px = 2.1`), times the perceptual kernel at 60 frames per second if there are several frames,
+    /// consecutive pairs of dimensions and all of them at half their weight, unbiased, barycentric steps of
+    /// slices.
     pub fn new(extent: Extent, dims: usize) -> Self {
         let kernel = default_kernel(&extent);
         let groups = DimensionGroup::pairs_and_whole(dims);
         Self {
             extent,
             dims,
-            // More dimensions are refused when the configuration is used; a list of them might not fit the memory.
+            // More dimensions are refused when the configuration is used; a list of them might not fit the
+            // memory.
             domains: vec![Domain::Interval; dims.min(MOST_DIMS)],
             terms: Term::blue_noise(&[kernel], FilterForm::LevelSets, &groups, &extent),
             slicing: Slicing::default(),
@@ -96,8 +98,8 @@ impl Config {
         self.with_kernels(&[kernel])
     }
 
-    /// Writes the terms for blue noise under these kernels, which share the work equally. Dimension groups and the form of
-    /// the filters stay as they are.
+    /// Writes the terms for blue noise under these kernels, which share the work equally. Dimension groups
+    /// and the form of the filters stay as they are.
     ///
     /// Terms that were set otherwise are replaced.
     #[must_use]
@@ -106,7 +108,8 @@ impl Config {
         self
     }
 
-    /// Writes the terms for blue noise in these dimension groups. Kernels and the form of the filters stay as they are.
+    /// Writes the terms for blue noise in these dimension groups. Kernels and the form of the filters stay as
+    /// they are.
     ///
     /// Terms that were set otherwise are replaced.
     #[must_use]

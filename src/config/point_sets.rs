@@ -9,12 +9,22 @@ use crate::table::extent::Extent;
 use crate::targets::{Density, Inks, Target};
 
 /// Which sets of labels are classes of their own.
+///
+/// ```
+/// use fsot::config::LabelSubsets;
+/// use fsot::{Config, Until};
+///
+/// // 32 points labelled 0 and 16 labelled 1; each label and both together are uniform.
+/// let points = Config::classes(&[32, 16], 2, &LabelSubsets::EachAndAll).optimize(Until::SlicesPerClass(256))?;
+/// assert_eq!(points.values().len(), 2 * 48);
+/// # Ok::<(), fsot::ConfigError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LabelSubsets {
     /// Each label, and all of them together.
     EachAndAll,
-    /// Every set of labels but the empty one: 3 classes for two labels, 7 for three, 15 for four. Beyond 12 labels that
-    /// would be thousands: there it is each label, and all of them together.
+    /// Every set of labels but the empty one: 3 classes for two labels, 7 for three, 15 for four. Beyond 12
+    /// labels that would be thousands: there it is each label, and all of them together.
     Every,
     /// These.
     Given(Vec<Vec<u32>>),
@@ -42,17 +52,18 @@ impl LabelSubsets {
 const MOST_LABELS: usize = 12;
 
 impl Config {
-    /// The defaults for a set of `count` points: these terms, interval domains, barycentric steps from 1 to 0.02.
+    /// The defaults for a set of `count` points: these terms, interval domains, barycentric steps from 1 to
+    /// 0.02.
     ///
-    /// Each step draws 16 directions for every class (for 16 of them, if a term has more), and terms are weighed by what they
-    /// pull. 1,000 to 4,000 slices per class make a good set.
+    /// Each step draws 16 directions for every class (for 16 of them, if a term has more), and terms are
+    /// weighed by what they pull. 1,000 to 4,000 slices per class make a good set.
     pub fn point_set(count: usize, dims: usize, terms: Vec<Term>) -> Self {
         let descent = Descent::Barycentric { rate: Schedule::geometric(1.0, 0.02) };
         Self { terms, descent, ..Self::new(Extent::points(count), dims) }
     }
 
-    /// A set of `counts.len()` classes: `counts[0]` points labelled 0, then `counts[1]` labelled 1, …; each of the
-    /// `subsets` of labels is to be uniform by itself.
+    /// A set of `counts.len()` classes: `counts[0]` points labelled 0, then `counts[1]` labelled 1, …; each
+    /// of the `subsets` of labels is to be uniform by itself.
     ///
     /// Two labels of 512 points: `Config::classes(&[512, 512], 2, &LabelSubsets::EachAndAll)`.
     pub fn classes(counts: &[usize], dims: usize, subsets: &LabelSubsets) -> Self {
@@ -72,8 +83,9 @@ impl Config {
         Self::point_set(count, 2, vec![whole(Classes::WholeTable, Target::Density(picture.into()), 2)])
     }
 
-    /// Stippling in colour: points labelled 0 to 3 for cyan, magenta, yellow and black, as many of each as its share of the ink,
-    /// in this order. Each ink, and each of the up to 15 sets of inks, is to look like its part of the picture.
+    /// Stippling in colour: points labelled 0 to 3 for cyan, magenta, yellow and black, as many of each as
+    /// its share of the ink, in this order. Each ink, and each of the up to 15 sets of inks, is to look like
+    /// its part of the picture.
     ///
     /// [`Inks::counts`] says how many points each ink has.
     #[cfg(feature = "image")]

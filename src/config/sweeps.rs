@@ -8,17 +8,27 @@ use crate::error::RangeError;
 
 /// How sweeps move the samples: `x ← x + rate · pull`.
 ///
-/// The pull is the negative gradient of [`crate::Objective::cramer`], brought to the scale where the natural step is 1: around a
-/// sample that sits well among its `n` neighbours there is room of a radius `r` with `V_d r^d n = 1` in the unit cube of
-/// `d` dimensions, and the curvature there is one sample's share of the gradient, per `r`.
+/// The pull is the negative gradient of [`crate::Objective::cramer`], brought to the scale where the natural
+/// step is 1: around a sample that sits well among its `n` neighbours there is room of a radius `r` with `V_d
+/// r^d n = 1` in the unit cube of `d` dimensions, and the curvature there is one sample's share of the
+/// gradient, per `r`.
 ///
-/// A step moves a sixteenth of the neighbours together; what they do to each other's pull grows with their number. Rates beyond
-/// `16 / (n r)` don't settle, and are taken as that: in two dimensions 5 at one sample per pixel of a still picture, 1.3 at
-/// sixteen; in four dimensions 2 and 0.25.
+/// A step moves a sixteenth of the neighbours together; what they do to each other's pull grows with their
+/// number. Rates beyond `16 / (n r)` don't settle, and are taken as that: in two dimensions 5 at one sample
+/// per pixel of a still picture, 1.3 at sixteen; in four dimensions 2 and 0.25.
+///
+/// ```
+/// use fsot::config::{Schedule, Sweeps};
+/// use fsot::{Config, Extent};
+///
+/// let gentle = Sweeps { rate: Schedule::geometric(1.0, 0.05), ..Sweeps::default() };
+/// let config = Config::new(Extent::still(32, 32), 2).with_sweeps(gentle);
+/// # let _ = config;
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sweeps {
-    /// Step size of a run of sweeps alone. One of `n` sweeps begins no higher than at `√n`, and ends no lower than at its
-    /// beginning divided by `n`: few sweeps can neither mend what large steps break nor settle.
+    /// Step size of a run of sweeps alone. One of `n` sweeps begins no higher than at `√n`, and ends no lower
+    /// than at its beginning divided by `n`: few sweeps can neither mend what large steps break nor settle.
     pub rate: Schedule,
     /// Step size of sweeps that follow slices in a run. Larger ones would undo what the slices have arranged.
     pub polish: Schedule,

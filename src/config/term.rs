@@ -12,7 +12,18 @@ use crate::targets::Target;
 /// Most slices of a step.
 const MOST_SLICES: usize = i32::MAX as usize;
 
-/// One part of the objective: a family of classes, what their samples should resemble, and in which dimensions.
+/// One part of the objective: a family of classes, what their samples should resemble, and in which
+/// dimensions.
+///
+/// ```
+/// use fsot::config::Role;
+/// use fsot::{Config, Extent};
+///
+/// // The default: a lattice of filters that is descended, and the whole table that is balanced.
+/// let config = Config::new(Extent::still(64, 64), 2);
+/// let roles: Vec<Role> = config.terms.iter().map(|term| term.role).collect();
+/// assert_eq!(roles, [Role::Descend, Role::Balance]);
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Term {
     /// The filters.
@@ -21,28 +32,46 @@ pub struct Term {
     pub target: Target,
     /// The dimensions that this term sees, as a renderer consumes them together.
     pub dims: Vec<usize>,
-    /// Share of the work: the number of slices that touch a sample is proportional to it, in the mean. Where no term has
-    /// classes per pixel, as in a point set, every class has its slices in each step, and their pull on a sample is
-    /// proportional to it instead. Positive.
+    /// Share of the work: the number of slices that touch a sample is proportional to it, in the mean. Where
+    /// no term has classes per pixel, as in a point set, every class has its slices in each step, and their
+    /// pull on a sample is proportional to it instead. Positive.
     pub weight: f64,
     /// How its slices move the samples.
     pub role: Role,
 }
 
 /// How the slices of a term move the samples.
+///
+/// ```
+/// use fsot::config::Role;
+///
+/// assert_eq!(Role::default(), Role::Descend);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
     /// All such terms together are descended.
     #[default]
     Descend,
-    /// After each step of the descent, samples move all the way to where the slices of the term wanted them before it
-    /// (times [`crate::Config::balance`]): alternating projections rather than a compromise of weights. Meant for few
-    /// slices of large classes, whose small but systematic displacements a compromise would drown.
+    /// After each step of the descent, samples move all the way to where the slices of the term wanted them
+    /// before it (times [`crate::Config::balance`]): alternating projections rather than a compromise of
+    /// weights. Meant for few slices of large classes, whose small but systematic displacements a compromise
+    /// would drown.
     Balance,
 }
 
 /// A group of dimensions that a renderer consumes together, with its share of the work.
+///
+/// ```
+/// use fsot::config::DimensionGroup;
+/// use fsot::{Config, Extent};
+///
+/// // A point on the light, one on the lens, and a little of all four together.
+/// let all = DimensionGroup::new([0, 1, 2, 3]).with_weight(0.25);
+/// let groups = [DimensionGroup::new([0, 1]), DimensionGroup::new([2, 3]), all];
+/// let config = Config::new(Extent::still(32, 32), 4).with_groups(&groups);
+/// assert_eq!(config.groups(), groups);
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DimensionGroup {
     /// Dimensions of the table, each once.
@@ -63,8 +92,8 @@ impl DimensionGroup {
         Self { weight, ..self }
     }
 
-    /// Consecutive pairs of dimensions with weight 1 (a last odd one alone), and all dimensions together with half
-    /// that weight if there are more than two. No table has more than 64 dimensions; more are left out.
+    /// Consecutive pairs of dimensions with weight 1 (a last odd one alone), and all dimensions together with
+    /// half that weight if there are more than two. No table has more than 64 dimensions; more are left out.
     pub fn pairs_and_whole(dims: usize) -> Vec<Self> {
         let all: Vec<usize> = (0..dims.min(MOST_DIMS)).collect();
         let mut groups: Vec<Self> =
@@ -80,10 +109,11 @@ impl DimensionGroup {
 const BALANCE_WEIGHT: f64 = 0.03;
 
 impl Term {
-    /// The terms for blue-noise error: each group under each kernel, and as much of the whole table and of each frame as
-    /// keeps them unbiased.
+    /// The terms for blue-noise error: each group under each kernel, and as much of the whole table and of
+    /// each frame as keeps them unbiased.
     ///
-    /// Kernels share the work equally; [`Config::with_kernels`](crate::Config::with_kernels) puts them into a configuration.
+    /// Kernels share the work equally; [`Config::with_kernels`](crate::Config::with_kernels) puts them into a
+    /// configuration.
     pub fn blue_noise(
         kernels: &[Kernel],
         form: FilterForm,
@@ -114,16 +144,26 @@ impl Term {
 }
 
 /// How slices are drawn.
+///
+/// ```
+/// use fsot::config::Slicing;
+/// use fsot::{Config, Extent};
+///
+/// let slicing = Slicing { batch_slices: Some(4096), ..Slicing::default() };
+/// let config = Config::new(Extent::still(64, 64), 2).with_slicing(slicing);
+/// # let _ = config;
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Slicing {
-    /// Directions per filtered subset, `1..=16`. Sixteen ride in the lanes of one vector; fewer cost the same.
+    /// Directions per filtered subset, `1..=16`. Sixteen ride in the lanes of one vector; fewer cost the
+    /// same.
     pub directions: usize,
-    /// Share of the directions that lie on coordinate axes, in `[0, 1]`. Axes replace whole frames: there are none for
-    /// groups of more than `directions` dimensions and for subsets too large to share directions, such as the whole
-    /// table. More sharpens one-dimensional marginals at the cost of all else.
+    /// Share of the directions that lie on coordinate axes, in `[0, 1]`. Axes replace whole frames: there are
+    /// none for groups of more than `directions` dimensions and for subsets too large to share directions,
+    /// such as the whole table. More sharpens one-dimensional marginals at the cost of all else.
     pub axis_share: f64,
-    /// Slices per step. `None`: a sixteenth of an epoch, where an epoch visits every pixel of every frame once; in a point
-    /// set `directions` slices of every class (of 16 classes of a term that has more).
+    /// Slices per step. `None`: a sixteenth of an epoch, where an epoch visits every pixel of every frame
+    /// once; in a point set `directions` slices of every class (of 16 classes of a term that has more).
     pub batch_slices: Option<usize>,
 }
 

@@ -3,6 +3,17 @@
 use serde::{Deserialize, Serialize};
 
 /// When a run ends.
+///
+/// ```
+/// use fsot::config::Work;
+/// use fsot::{Config, Extent, Until};
+///
+/// let config = Config::new(Extent::still(16, 16), 2);
+/// let soon = config.clone().optimize(Until::Seconds(0.01))?;
+/// let slices_then_sweeps = config.optimize(Until::Work(Work { slices_per_class: 64, sweeps: 8 }))?;
+/// assert_ne!(soon, slices_then_sweeps);
+/// # Ok::<(), fsot::ConfigError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Until {
@@ -14,12 +25,14 @@ pub enum Until {
     Sweeps(u64),
     /// Slices first, then sweeps.
     Work(Work),
-    /// After about this many seconds, in the sequence that gets furthest by then: sweeps where the objective has its
-    /// closed form, after slices if there is time for both; slices elsewhere. A brief calibration fixes how much work fits,
-    /// schedules follow it, and [`RunReport::work`](crate::RunReport::work) makes the very same table again, anywhere.
+    /// After about this many seconds, in the sequence that gets furthest by then: sweeps where the objective
+    /// has its closed form, after slices if there is time for both; slices elsewhere. A brief calibration
+    /// fixes how much work fits, schedules follow it, and [`RunReport::work`](crate::RunReport::work) makes
+    /// the very same table again, anywhere.
     Seconds(f64),
-    /// As soon as the mean squared displacement falls by less than the share `improvement` from one window to the
-    /// next, and at the latest after `at_most` slices per pixel and frame, the number that schedules follow.
+    /// As soon as the mean squared displacement falls by less than the share `improvement` from one window to
+    /// the next, and at the latest after `at_most` slices per pixel and frame, the number that schedules
+    /// follow.
     Converged {
         /// Least relative improvement worth going on for, in `[0, 1)`.
         improvement: f64,
@@ -32,8 +45,21 @@ pub enum Until {
 
 /// An amount of work: slices come first, then sweeps.
 ///
-/// Slices hold any class and target, and reach the lower bound; sweeps ([`Optimizer::sweep`](crate::Optimizer::sweep))
-/// take the whole of the objective's directions into account at once, and are the sooner at a low error.
+/// Slices hold any class and target, and reach the lower bound; sweeps
+/// ([`Optimizer::sweep`](crate::Optimizer::sweep)) take the whole of the objective's directions into account
+/// at once, and are the sooner at a low error.
+///
+/// ```
+/// use fsot::config::Work;
+/// use fsot::{Config, Extent, Optimizer, Until};
+///
+/// let mut optimizer = Optimizer::new(Config::new(Extent::still(16, 16), 2))?;
+/// let report = optimizer.run(Until::Seconds(0.01))?;
+/// // The same table again, on any machine.
+/// let again = Config::new(Extent::still(16, 16), 2).optimize(Until::Work(report.work))?;
+/// assert_eq!(optimizer.into_table(), again);
+/// # Ok::<(), fsot::ConfigError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Work {
     /// Slices per pixel and frame (rounded up to whole steps).
@@ -43,6 +69,16 @@ pub struct Work {
 }
 
 /// How a run ended.
+///
+/// ```
+/// use fsot::config::EndReason;
+/// use fsot::{Config, Extent, Optimizer, Until};
+///
+/// let mut optimizer = Optimizer::new(Config::new(Extent::still(16, 16), 2))?;
+/// let until = Until::Converged { improvement: 0.05, window_steps: 16, at_most: 10_000 };
+/// assert_eq!(optimizer.run(until)?.ended, EndReason::Converged);
+/// # Ok::<(), fsot::ConfigError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EndReason {

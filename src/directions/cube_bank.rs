@@ -1,14 +1,14 @@
 //! Directions in three and more dimensions, with their laws tabulated once.
 //!
-//! Computing the law of a projection costs far more than transporting a small subset along it. A bank therefore
-//! keeps the laws of a few hundred directions, the rows of random orthonormal frames. The law depends on the
-//! absolute values of the components only, whatever their order; a random signed permutation of the axes per use
-//! turns each stored direction into `2^d d!` of them and keeps its frame orthonormal. The law is symmetric, so its lower
-//! half is enough.
+//! Computing the law of a projection costs far more than transporting a small subset along it. A bank
+//! therefore keeps the laws of a few hundred directions, the rows of random orthonormal frames. The law
+//! depends on the absolute values of the components only, whatever their order; a random signed permutation
+//! of the axes per use turns each stored direction into `2^d d!` of them and keeps its frame orthonormal. The
+//! law is symmetric, so its lower half is enough.
 //!
-//! What interpolation costs: in 3, 4, 5, 8 and 16 dimensions no mean over a quantile cell was off by more than 1.4e-7
-//! for subsets of up to 4096 samples (4e-9 up to 97 samples), and by more than 4.2e-7 for 40,000; the f32 around it rounds by
-//! 1e-7. The tests below print the worst of each.
+//! What interpolation costs: in 3, 4, 5, 8 and 16 dimensions no mean over a quantile cell was off by more
+//! than 1.4e-7 for subsets of up to 4096 samples (4e-9 up to 97 samples), and by more than 4.2e-7 for 40,000;
+//! the f32 around it rounds by 1e-7. The tests below print the worst of each.
 
 use rayon::prelude::*;
 
@@ -28,12 +28,13 @@ pub(crate) struct CubeBank {
 pub(crate) struct Block {
     /// Unit vectors, one row of lanes per dimension.
     pub theta: Vec<Row>,
-    /// Integral of the quantile of `|theta|` from 0 to each knot of the lower half, and its derivative with respect to
-    /// the knot's place.
+    /// Integral of the quantile of `|theta|` from 0 to each knot of the lower half, and its derivative with
+    /// respect to the knot's place.
     knots: Vec<[[f64; LANES]; 2]>,
 }
 
-/// Where a boundary between quantile cells of the lower half lies among the knots, with the weights of cubic Hermite interpolation.
+/// Where a boundary between quantile cells of the lower half lies among the knots, with the weights of cubic
+/// Hermite interpolation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Boundary {
     interval: u32,
@@ -124,10 +125,12 @@ impl Boundary {
     }
 }
 
-/// Quantile level at this place in `[0, 1]` among the knots, and the level's derivative with respect to the place.
+/// Quantile level at this place in `[0, 1]` among the knots, and the level's derivative with respect to the
+/// place.
 ///
-/// The cube crowds the knots towards 0, where the quantile of a sum of `d` uniforms rises as `u^(1/d)`. The square is 20
-/// times worse over the first cells of large subsets, the fourth power 5 times worse everywhere else.
+/// The cube crowds the knots towards 0, where the quantile of a sum of `d` uniforms rises as `u^(1/d)`. The
+/// square is 20 times worse over the first cells of large subsets, the fourth power 5 times worse everywhere
+/// else.
 fn unplaced(place: f64) -> (f64, f64) {
     (0.5 * place.powi(3), 1.5 * place.powi(2))
 }
@@ -170,7 +173,8 @@ mod tests {
         }
     }
 
-    /// Every 16th direction of the bank, and all subset sizes that matter: the worst is what the module promises.
+    /// Every 16th direction of the bank, and all subset sizes that matter: the worst is what the module
+    /// promises.
     #[test]
     fn tabulated_cell_means_are_those_of_the_law() {
         for dims in [3, 4, 5, 8, 16] {

@@ -6,8 +6,8 @@ use rand_distr::StandardNormal;
 
 use crate::random::{self, Purpose};
 
-/// The `index`th of `count` directions that are spread evenly: over the half circle in the plane, at random in more
-/// dimensions.
+/// The `index`th of `count` directions that are spread evenly: over the half circle in the plane, at random
+/// in more dimensions.
 pub(crate) fn spread(dims: usize, index: usize, count: usize) -> Vec<f64> {
     if dims == 1 {
         return vec![1.0];

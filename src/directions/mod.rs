@@ -21,8 +21,9 @@ use crate::targets::Target;
 /// * One dimension has one direction.
 /// * In the plane the directions of a subset divide the half circle evenly, from a phase that its caller
 ///   stratifies over the subsets of a step.
-/// * In more dimensions they are rows of random orthonormal frames ([`CubeBank`]); orthonormal frames and even angles
-///   are variance reduction over independent directions (Sisouk et al. 2025; Petrovic et al. 2025).
+/// * In more dimensions they are rows of random orthonormal frames ([`CubeBank`]); orthonormal frames and
+///   even angles are variance reduction over independent directions (Sisouk et al. 2025; Petrovic et al.
+///   2025).
 #[derive(Clone, Debug)]
 pub(crate) struct Slicer {
     dims: usize,
@@ -31,8 +32,8 @@ pub(crate) struct Slicer {
     bank: Option<Arc<CubeBank>>,
     /// Directions and laws of a target other than the cube.
     target_bank: Option<Arc<TargetBank>>,
-    /// Cosine and sine of evenly spaced angles, turned as one for each subset. Where their number is even, the second
-    /// half of them are the first turned by a right angle, and not listed.
+    /// Cosine and sine of evenly spaced angles, turned as one for each subset. Where their number is even,
+    /// the second half of them are the first turned by a right angle, and not listed.
     fan: Vec<[f64; 2]>,
 }
 
@@ -49,8 +50,8 @@ pub(crate) struct Directions {
     places: [u32; LANES],
     /// Lanes that were replaced by a coordinate axis.
     pub on_axis: [bool; LANES],
-    /// Whether the upper half of the lanes holds the lower half turned by a right angle, in the plane: their laws
-    /// are the same.
+    /// Whether the upper half of the lanes holds the lower half turned by a right angle, in the plane: their
+    /// laws are the same.
     pub paired: bool,
 }
 
@@ -83,8 +84,8 @@ impl Directions {
 }
 
 impl Slicer {
-    /// Draws `per_subset` directions (`1..=LANES`; one in one dimension) for a target, of which the share `axis_share` lies on
-    /// coordinate axes.
+    /// Draws `per_subset` directions (`1..=LANES`; one in one dimension) for a target, of which the share
+    /// `axis_share` lies on coordinate axes.
     ///
     /// # Errors
     /// A target with a law that is none.
@@ -206,7 +207,8 @@ impl Slicer {
         let replaced = ((wanted + generator.random::<f64>()) as usize).min(frames);
         for frame in 0..replaced {
             for axis in 0..self.dims {
-                // In the plane, directions half a fan apart are orthogonal; in a bank, frames are consecutive.
+                // In the plane, directions half a fan apart are orthogonal; in a bank, frames are
+                // consecutive.
                 let lane = if self.dims == 2 { frame + axis * frames } else { frame * self.dims + axis };
                 if let Some(bank) = &self.target_bank {
                     directions.look_up(bank, lane, bank.len() + axis);

@@ -1,7 +1,8 @@
 //! Directions of targets other than the cube, with their laws.
 //!
-//! The cube's laws have closed forms, or symmetries that make many directions out of a few. Other targets have
-//! neither: their laws are tabulated once, along a fixed set of directions that every slice is taken from.
+//! The cube's laws have closed forms, or symmetries that make many directions out of a few. Other targets
+//! have neither: their laws are tabulated once, along a fixed set of directions that every slice is taken
+//! from.
 
 use rayon::prelude::*;
 
@@ -20,8 +21,8 @@ pub(crate) struct TargetBank {
     laws: Vec<Pieces>,
 }
 
-/// Directions in the plane. In a square of 65,536 points, the edge of the square moves by less than the distance of two points
-/// from one direction to the next.
+/// Directions in the plane. In a square of 65,536 points, the edge of the square moves by less than the
+/// distance of two points from one direction to the next.
 const IN_THE_PLANE: usize = 256;
 /// Directions in space.
 const IN_SPACE: usize = 512;

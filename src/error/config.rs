@@ -5,6 +5,16 @@ use thiserror::Error;
 use super::{ExtentError, GroupError, KernelError, RangeError, TargetError};
 
 /// A configuration that cannot be optimised.
+///
+/// ```
+/// use fsot::{Config, ConfigError, Extent, Objective};
+///
+/// let mut config = Config::new(Extent::still(16, 16), 2);
+/// config.terms[0].weight = -1.0;
+/// let error = Objective::new(&config).unwrap_err();
+/// assert!(matches!(error, ConfigError::Term { term: 0, .. }));
+/// assert_eq!(error.to_string(), "term 0: the weight of a term is -1: give a value above 0 and finite");
+/// ```
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ConfigError {

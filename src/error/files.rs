@@ -7,6 +7,13 @@ use thiserror::Error;
 use super::ExtentError;
 
 /// A table that cannot be made, read or written.
+///
+/// ```
+/// use fsot::{Extent, SampleTable};
+///
+/// let error = SampleTable::new(Extent::still(1, 2), 1, vec![0.5, 1.0]).unwrap_err();
+/// assert!(error.to_string().contains("x 1, sample 0, dim 0] is 1"));
+/// ```
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum TableError {
@@ -22,7 +29,11 @@ pub enum TableError {
         expected: usize,
     },
     /// A value lies outside `[0, 1)` or is not finite.
-    #[error("the value at [frame {}, y {}, x {}, sample {}, dim {}] is {value}: values must lie in [0, 1)", at[0], at[1], at[2], at[3], at[4])]
+    #[error(
+        "the value at [frame {}, y {}, x {}, sample {}, dim {}] is {value}: \
+         values must lie in [0, 1)",
+        at[0], at[1], at[2], at[3], at[4]
+    )]
     Value {
         /// `[frame, y, x, sample, dim]`.
         at: [usize; 5],
@@ -41,7 +52,8 @@ pub enum TableError {
     },
     /// The path cannot name a table.
     #[error(
-        "{path:?} cannot name a table: give a file name that ends in .npy; .json is for the metadata beside it"
+        "{path:?} cannot name a table: give a file name that ends in .npy; \
+         .json is for the metadata beside it"
     )]
     FileName {
         /// The path.
@@ -58,6 +70,18 @@ pub enum TableError {
 }
 
 /// What is wrong with a file that should hold a table or its metadata.
+///
+/// ```
+/// use fsot::SampleTable;
+/// use fsot::files::{FormatError, TableError};
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("table.npy");
+/// std::fs::write(&path, "no table")?;
+/// let error = SampleTable::load(&path).unwrap_err();
+/// assert!(matches!(error, TableError::Format { problem: FormatError::NotNpy { .. }, .. }));
+/// # Ok::<(), std::io::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum FormatError {
@@ -115,7 +139,11 @@ pub enum FormatError {
         shape: Vec<usize>,
     },
     /// The array does not have five axes.
-    #[error("shape {shape:?} has {} axes instead of 5: reshape to [frame, y, x, sample, dim], 1 for an absent axis", shape.len())]
+    #[error(
+        "shape {shape:?} has {} axes instead of 5: \
+         reshape to [frame, y, x, sample, dim], 1 for an absent axis",
+        shape.len()
+    )]
     Axes {
         /// Shape of the file.
         shape: Vec<usize>,
@@ -130,7 +158,8 @@ pub enum FormatError {
     },
     /// The file does not hold as many values as its shape says.
     #[error(
-        "{given} bytes of values, but shape {shape:?} takes {expected}: the file was cut off or appended to, write it again"
+        "{given} bytes of values, but shape {shape:?} takes {expected}: \
+         the file was cut off or appended to, write it again"
     )]
     Length {
         /// Bytes after the header.
@@ -141,7 +170,11 @@ pub enum FormatError {
         shape: [usize; 5],
     },
     /// A value lies outside `[0, 1)` or is not finite.
-    #[error("the value at [frame {}, y {}, x {}, sample {}, dim {}] is {value}: bring all values into [0, 1) and save them again", at[0], at[1], at[2], at[3], at[4])]
+    #[error(
+        "the value at [frame {}, y {}, x {}, sample {}, dim {}] is {value}: \
+         bring all values into [0, 1) and save them again",
+        at[0], at[1], at[2], at[3], at[4]
+    )]
     Value {
         /// `[frame, y, x, sample, dim]`.
         at: [usize; 5],
@@ -172,7 +205,8 @@ pub enum FormatError {
     },
     /// The metadata describes another table.
     #[error(
-        "the metadata says shape {metadata:?}, but the table has {table:?}: bring the two that belong together"
+        "the metadata says shape {metadata:?}, but the table has {table:?}: \
+         bring the two that belong together"
     )]
     OtherTable {
         /// Shape according to the metadata.

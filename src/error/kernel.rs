@@ -5,6 +5,13 @@ use thiserror::Error;
 use super::{ExtentError, RangeError};
 
 /// A kernel that cannot filter.
+///
+/// ```
+/// use fsot::{Extent, Kernel};
+///
+/// let error = Kernel::gaussian(-1.0).taps(&Extent::still(8, 8)).unwrap_err();
+/// assert_eq!(error.to_string(), "sigma_px is -1: give a value above 0, at most 1e6");
+/// ```
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum KernelError {

@@ -1,4 +1,5 @@
-//! What a caller got wrong, with the values that show it, by owner. Every message ends in what to do about it.
+//! What a caller got wrong, with the values that show it, by owner. Every message ends in what to do about
+//! it.
 
 mod config;
 mod files;

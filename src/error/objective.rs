@@ -5,6 +5,16 @@ use thiserror::Error;
 use super::ConfigError;
 
 /// A question that an objective cannot answer.
+///
+/// ```
+/// use fsot::objective::ObjectiveError;
+/// use fsot::{Config, Extent, Objective};
+///
+/// let objective = Objective::new(&Config::new(Extent::still(4, 4), 2))?;
+/// let error = objective.cramer(&[0.5; 7]).unwrap_err();
+/// assert_eq!(error, ObjectiveError::PointCount { given: 7, expected: 32 });
+/// # Ok::<(), fsot::ConfigError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ObjectiveError {

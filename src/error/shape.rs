@@ -3,6 +3,13 @@
 use thiserror::Error;
 
 /// A number that lies outside its range.
+///
+/// ```
+/// use fsot::config::RangeError;
+///
+/// let error = RangeError::check(false, "alpha", 2.0, "from 0 to 1").unwrap_err();
+/// assert_eq!(error.to_string(), "alpha is 2: give a value from 0 to 1");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error("{name} is {value}: give a value {expected}")]
 #[non_exhaustive]
@@ -31,6 +38,14 @@ impl RangeError {
 }
 
 /// An extent, or a number of dimensions, that no table has.
+///
+/// ```
+/// use fsot::Extent;
+/// use fsot::config::ExtentError;
+///
+/// let empty = Extent::still(0, 64);
+/// assert_eq!(empty.validate(2), Err(ExtentError::EmptyAxis { axis: "height" }));
+/// ```
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ExtentError {
@@ -57,6 +72,12 @@ pub enum ExtentError {
 }
 
 /// A list of dimensions that is no group.
+///
+/// ```
+/// use fsot::config::GroupError;
+///
+/// assert_eq!(GroupError::check(&[0, 2], 2), Err(GroupError::NoSuchDimension { dimension: 2, dims: 2 }));
+/// ```
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum GroupError {
@@ -64,7 +85,11 @@ pub enum GroupError {
     #[error("the dimension group is empty: name at least one dimension")]
     Empty,
     /// It names a dimension that the table does not have.
-    #[error("the dimension group names dimension {dimension}, but the table has {dims}: name dimensions from 0 to {}", dims.saturating_sub(1))]
+    #[error(
+        "the dimension group names dimension {dimension}, but the table has {dims}: \
+         name dimensions from 0 to {}",
+        dims.saturating_sub(1)
+    )]
     NoSuchDimension {
         /// The dimension named.
         dimension: usize,

@@ -5,6 +5,13 @@ use thiserror::Error;
 use super::RangeError;
 
 /// A measure that cannot be a target.
+///
+/// ```
+/// use fsot::targets::{Density, TargetError};
+///
+/// let error = Density::new(2, 1, vec![0.0; 2]).unwrap_err();
+/// assert_eq!(error, TargetError::NoDensity { width: 2, height: 1 });
+/// ```
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum TargetError {

@@ -22,8 +22,25 @@ const RANGE: &str = "[0, 1)";
 /// known are ignored when reading, so that notes may be added to the file by hand.
 ///
 /// JSON has no NaN and no infinities: where an `f64` of this structure is not finite, the file says `"NaN"`,
-/// `"inf"` or `"-inf"`. Seeds are plain JSON integers of up to 64 bits; readers that keep all numbers as `f64`
-/// (JavaScript) round those above 2^53.
+/// `"inf"` or `"-inf"`. Seeds are plain JSON integers of up to 64 bits; readers that keep all numbers as
+/// `f64` (JavaScript) round those above 2^53.
+///
+/// ```
+/// use fsot::files::Metadata;
+/// use fsot::{Config, Extent, Optimizer, SampleTable, Until};
+///
+/// let mut optimizer = Optimizer::new(Config::new(Extent::still(16, 16), 2).with_seed(7))?;
+/// let report = optimizer.run(Until::Sweeps(4))?;
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("table.npy");
+/// optimizer.table().save_with(&path, &optimizer.metadata(&report))?;
+///
+/// let Metadata { seed, configuration, run, .. } = Metadata::load(&path)?;
+/// assert_eq!((seed, run.sweeps), (7, 4));
+/// let config: Config = serde_json::from_value(configuration)?;
+/// assert_eq!(&config, optimizer.config());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Metadata {
     /// Kind and version of the file: `fsot sample table 1`.
@@ -73,8 +90,8 @@ pub struct BoundRecord {
 /// A Monte Carlo estimate of the error bound.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BoundEstimate {
-    /// Mean 1-Wasserstein distance along a slice per sample that a slice touches, in units of the unit cube: the
-    /// level-set objective `E[(n / N) W1]` divided by `E[n / N]`.
+    /// Mean 1-Wasserstein distance along a slice per sample that a slice touches, in units of the unit cube:
+    /// the level-set objective `E[(n / N) W1]` divided by `E[n / N]`.
     #[serde(with = "number")]
     pub value: f64,
     /// Standard error of `value`.
@@ -107,8 +124,8 @@ pub struct RunRecord {
 }
 
 impl Metadata {
-    /// Metadata of a table of this extent and so many dimensions, without kernels, bound and run record: assign those that
-    /// are known. [`Optimizer::metadata`](crate::Optimizer::metadata) knows most of them.
+    /// Metadata of a table of this extent and so many dimensions, without kernels, bound and run record:
+    /// assign those that are known. [`Optimizer::metadata`](crate::Optimizer::metadata) knows most of them.
     pub fn new(extent: Extent, dims: usize, seed: u64, configuration: serde_json::Value) -> Self {
         let Extent { frames, height, width, spp } = extent;
         Self {

@@ -5,5 +5,5 @@ pub(crate) mod npy;
 mod whole;
 
 pub use self::metadata::{BoundEstimate, BoundRecord, KernelTaps, Metadata, RunRecord};
-pub use self::whole::{Replaced, WholeFile};
+pub use self::whole::WholeFile;
 pub use crate::error::{FormatError, TableError};

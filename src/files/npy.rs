@@ -32,24 +32,35 @@ const MAX_AXES: usize = 64;
 const MAX_NESTING: usize = 4;
 
 impl SampleTable {
-    /// Writes the table as `.npy`. An existing file is replaced when the new one is complete; a failure leaves
-    /// it as it was. A symbolic link is followed. A `.json` that lies beside the file stays as it is.
+    /// Writes the table as `.npy`. An existing file is replaced when the new one is complete; a failure
+    /// leaves it as it was. A symbolic link is followed. A `.json` that lies beside the file stays as it is.
     ///
     /// # Errors
     /// A path that cannot name a table ([`TableError::FileName`]) or cannot be written ([`TableError::Io`]).
+    ///
+    /// ```
+    /// use fsot::{Extent, SampleTable};
+    ///
+    /// let folder = tempfile::tempdir()?;
+    /// let path = folder.path().join("table.npy");
+    /// let table = SampleTable::white_noise(Extent::still(8, 8), 2, 0)?;
+    /// table.save(&path)?;
+    /// assert_eq!(SampleTable::load(&path)?, table);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), TableError> {
         let path = path.as_ref();
         metadata::check_name(path)?;
         self.pending(path).and_then(WholeFile::commit).map_err(|error| cannot_write(path, error))
     }
 
-    /// Writes the table as `.npy` and its metadata as `.json` beside it ([`Metadata::path_beside`]). Both files
-    /// are complete before either is renamed; the metadata is renamed first, the table last. A failure leaves
-    /// both as they were.
+    /// Writes the table as `.npy` and its metadata as `.json` beside it ([`Metadata::path_beside`]). Both
+    /// files are complete before either is renamed; the metadata is renamed first, the table last. A failure
+    /// leaves both as they were.
     ///
     /// # Errors
-    /// As [`save`](Self::save), and metadata that belong to a table of another shape or could not be read back
-    /// ([`TableError::Format`]).
+    /// As [`save`](Self::save), and metadata that belong to a table of another shape or could not be read
+    /// back ([`TableError::Format`]).
     pub fn save_with(&self, path: impl AsRef<Path>, metadata: &Metadata) -> Result<(), TableError> {
         let path = path.as_ref();
         metadata::check_name(path)?;
@@ -102,7 +113,8 @@ impl SampleTable {
         Ok((table, metadata))
     }
 
-    /// Finds out before the work whether a table and its metadata could be saved at `path`. Leaves nothing behind.
+    /// Finds out before the work whether a table and its metadata could be saved at `path`. Leaves nothing
+    /// behind.
     ///
     /// # Errors
     /// As [`save_with`](Self::save_with).
@@ -118,7 +130,8 @@ impl SampleTable {
     /// Writes header and values beside `path`.
     fn pending(&self, path: &Path) -> io::Result<WholeFile> {
         WholeFile::write(path, |out| {
-            // The header is made here, and not by `WriteNpyExt`, because that writes the machine's byte order.
+            // The header is made here, and not by `WriteNpyExt`, because that writes the machine's byte
+            // order.
             let type_descriptor = "'<f4'".parse().map_err(io::Error::other)?;
             let shape = self.shape().to_vec();
             let header = Header { type_descriptor, layout: Layout::Standard, shape };

@@ -9,19 +9,37 @@ use tempfile::TempPath;
 /// A file that is complete on the disk, but still has a temporary name beside its target.
 ///
 /// Dropping it removes it and leaves the target as it was.
+///
+/// ```
+/// use std::io::Write;
+///
+/// use fsot::files::WholeFile;
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("figures.csv");
+/// WholeFile::write(&path, |out| writeln!(out, "bound,bias"))?.commit()?;
+/// assert_eq!(std::fs::read_to_string(&path)?, "bound,bias\n");
+/// # Ok::<(), std::io::Error>(())
+/// ```
+#[derive(Debug)]
 pub struct WholeFile {
     file: TempPath,
     target: PathBuf,
 }
 
 /// What a renamed file has replaced.
-pub struct Replaced {
+#[derive(Debug)]
+pub(crate) struct Replaced {
     target: PathBuf,
     previous: Option<Vec<u8>>,
 }
 
 impl WholeFile {
     /// Writes the contents beside `path` and waits until they have reached the disk.
+    ///
+    /// # Errors
+    /// A path that names a directory, a device or a pipe, or lies in no directory; whatever stands against
+    /// writing.
     pub fn write(
         path: &Path,
         fill: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>,
@@ -47,12 +65,15 @@ impl WholeFile {
     }
 
     /// Takes the target's name.
+    ///
+    /// # Errors
+    /// Whatever stands against renaming; the target is as it was then.
     pub fn commit(self) -> io::Result<()> {
         self.file.persist(&self.target).map_err(|failed| failed.error)
     }
 
     /// Takes the target's name and remembers what was there; for small files.
-    pub fn replace(self) -> io::Result<Replaced> {
+    pub(crate) fn replace(self) -> io::Result<Replaced> {
         let previous = match fs::read(&self.target) {
             Ok(bytes) => Some(bytes),
             Err(absent) if absent.kind() == io::ErrorKind::NotFound => None,
@@ -66,7 +87,7 @@ impl WholeFile {
 
 impl Replaced {
     /// Puts back what was there, as far as possible: the caller is already reporting why.
-    pub fn undo(self) {
+    pub(crate) fn undo(self) {
         let _ = match self.previous {
             None => fs::remove_file(&self.target),
             Some(bytes) => {

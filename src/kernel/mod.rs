@@ -1,9 +1,10 @@
 //! Filters over pixels and frames, and their taps: lattice offsets sorted by falling weight.
 //!
-//! Conventions, stated once. The spatial Gaussian is `exp(-r² / sigma_px²)` (Georgiev and Fajardo 2016; Salaün
-//! et al. 2022), whose standard deviation is `sigma_px / √2`; [`SpatialKernel::gaussian_from_deviation`] takes
-//! the other convention, `exp(-r² / (2 s²))` (Wolfe et al. 2022; Donnelly et al. 2024). Temporal kernels weight
-//! the current and *past* frames. Weights are relative: only their ratios matter.
+//! Conventions, stated once. The spatial Gaussian is `exp(-r² / sigma_px²)` (Georgiev and Fajardo 2016;
+//! Salaün et al. 2022), whose standard deviation is `sigma_px / √2`;
+//! [`SpatialKernel::gaussian_from_deviation`] takes the other convention, `exp(-r² / (2 s²))` (Wolfe et al.
+//! 2022; Donnelly et al. 2024). Temporal kernels weight the current and *past* frames. Weights are relative:
+//! only their ratios matter.
 
 mod autocorrelation;
 mod spatial;
@@ -24,6 +25,18 @@ use crate::table::extent::Extent;
 ///
 /// The other combination in use, *separate* (a spatial filter in every frame and a temporal filter at every
 /// pixel, Wolfe et al. 2022), is two kernels: [`Kernel::separate`].
+///
+/// ```
+/// use fsot::kernel::{SpatialKernel, TemporalKernel};
+/// use fsot::{Extent, Kernel};
+///
+/// // What temporal antialiasing with a weight of a tenth shows of a box of 3 by 3 pixels.
+/// let space = SpatialKernel::Box { size_px: 3 };
+/// let kernel = Kernel::product(space, TemporalKernel::Ema { alpha: 0.1 });
+/// let taps = kernel.taps(&Extent::animation(64, 32, 32))?;
+/// assert_eq!(taps.iter().filter(|tap| tap.dt == -1).count(), 9);
+/// # Ok::<(), fsot::kernel::KernelError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Kernel {
     /// Weights in space.
@@ -68,12 +81,13 @@ impl Kernel {
 
     /// The taps of the kernel on a table that wraps, by falling weight.
     ///
-    /// A kernel wider than the tile or longer than the animation folds onto itself: each offset occurs once, with
-    /// the sum of its images' weights. Weights that differ by rounding only (relative 1e-9) are made equal, so
-    /// that level sets keep the kernel's symmetry.
+    /// A kernel wider than the tile or longer than the animation folds onto itself: each offset occurs once,
+    /// with the sum of its images' weights. Weights that differ by rounding only (relative 1e-9) are made
+    /// equal, so that level sets keep the kernel's symmetry.
     ///
     /// # Errors
-    /// An empty extent; a parameter outside its documented range; a negative or non-finite weight; no positive weight.
+    /// An empty extent; a parameter outside its documented range; a negative or non-finite weight; no
+    /// positive weight.
     pub fn taps(&self, extent: &Extent) -> Result<Vec<Tap>, KernelError> {
         extent.validate(1)?;
         if !(0.0..1.0).contains(&self.truncation) {

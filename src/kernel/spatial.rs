@@ -9,6 +9,14 @@ use crate::error::KernelError;
 use crate::table::extent::Extent;
 
 /// Filter weights over the pixels of a frame, centred on the pixel that is filtered.
+///
+/// ```
+/// use fsot::kernel::SpatialKernel;
+///
+/// // The convention of Wolfe et al. 2022: a standard deviation.
+/// let SpatialKernel::Gaussian { sigma_px } = SpatialKernel::gaussian_from_deviation(1.5) else { panic!() };
+/// assert!((sigma_px - 1.5 * 2.0_f64.sqrt()).abs() < 1e-15);
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SpatialKernel {
@@ -32,6 +40,15 @@ pub enum SpatialKernel {
 }
 
 /// One tap of a custom spatial kernel.
+///
+/// ```
+/// use fsot::kernel::{SpatialKernel, SpatialTap};
+///
+/// // A pixel and its right neighbour.
+/// let taps = [(0, 1.0), (1, 0.5)].map(|(dx, weight)| SpatialTap { dy: 0, dx, weight });
+/// let kernel = SpatialKernel::Taps(taps.to_vec());
+/// # let _ = kernel;
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SpatialTap {
     /// Rows down from the filtered pixel.

@@ -8,6 +8,14 @@ use super::taps::{NEGLIGIBLE, binomial, check_taps, checked_size, gaussian, rang
 use crate::error::KernelError;
 
 /// Filter weights over the current frame and the frames before it.
+///
+/// ```
+/// use fsot::kernel::TemporalKernel;
+///
+/// let history = TemporalKernel::Ema { alpha: 0.5 }.taps()?;
+/// assert_eq!(history[..3], [1.0, 0.5, 0.25]);
+/// # Ok::<(), fsot::kernel::KernelError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TemporalKernel {

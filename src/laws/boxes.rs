@@ -1,9 +1,10 @@
 //! The law of a sum of independent uniforms on `[0, wᵢ]`: the univariate box spline.
 //!
-//! The textbook formula, an alternating sum over the 2^D subset sums of the widths, loses all digits by D ≈ 10.
-//! Here one box after the other is averaged in, `F_k(x) = mean of F_{k−1} over [x − w_k, x]`, on a mesh that holds
-//! the points where the law is not smooth. Windows are sums of positive parts, so nothing cancels and no
-//! width is too small. Only the lower half of the support is kept: the law is symmetric, and averages look left.
+//! The textbook formula, an alternating sum over the 2^D subset sums of the widths, loses all digits by D ≈
+//! 10. Here one box after the other is averaged in, `F_k(x) = mean of F_{k−1} over [x − w_k, x]`, on a mesh
+//! that holds the points where the law is not smooth. Windows are sums of positive parts, so nothing cancels
+//! and no width is too small. Only the lower half of the support is kept: the law is symmetric, and averages
+//! look left.
 //!
 //! De Boor, Höllig, Riemenschneider 1993, *Box Splines*.
 
@@ -108,8 +109,8 @@ fn mesh(widths: &[f64]) -> Vec<f64> {
 
 /// The law of the boxes added so far, at the nodes and over the cells of a mesh.
 ///
-/// Inside cell `c` the distribution function is the quartic (in cell 0: the power law) that has its values and slopes at both
-/// nodes and its mean over the cell.
+/// Inside cell `c` the distribution function is the quartic (in cell 0: the power law) that has its values
+/// and slopes at both nodes and its mean over the cell.
 struct Sum {
     nodes: Vec<f64>,
     cdf: Vec<f64>,
@@ -157,7 +158,8 @@ impl Sum {
     /// Exponent of the power law of cell 0, which has the value and the slope of its right node.
     fn exponent(&self) -> f64 {
         let exponent = self.nodes[1] * self.density[1] / self.cdf[1];
-        // A sum of boxes is log-concave, so 1 is the least possible; it also serves where all has underflowed.
+        // A sum of boxes is log-concave, so 1 is the least possible; it also serves where all has
+        // underflowed.
         if exponent.is_finite() { exponent.max(1.0) } else { 1.0 }
     }
 

@@ -86,7 +86,8 @@ impl CubeLaw {
         }
     }
 
-    /// The quantile function `Q` at `u`, clamped to `[0, 1]`: nondecreasing, from one end of the support to the other.
+    /// The quantile function `Q` at `u`, clamped to `[0, 1]`: nondecreasing, from one end of the support to
+    /// the other.
     ///
     /// O(log grid).
     pub(super) fn quantile(&self, u: f64) -> f64 {

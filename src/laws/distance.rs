@@ -1,7 +1,7 @@
 //! One-dimensional transport in `f64`: sort, match, displacement, cost. Pure, sequential, without randomness.
 //!
-//! The textbook path: gradients on explicit slices and every measurement go through it, and the optimiser's fast
-//! paths are checked against it.
+//! The textbook path: gradients on explicit slices and every measurement go through it, and the optimiser's
+//! fast paths are checked against it.
 
 use crate::laws::Projected;
 
@@ -22,8 +22,8 @@ impl Workspace {
         &self.order
     }
 
-    /// Calls `visit(position, lower, upper)` for each projection, by increasing value, with the cell of the target's
-    /// quantile function that it is matched with. Masses are `weights`, or equal.
+    /// Calls `visit(position, lower, upper)` for each projection, by increasing value, with the cell of the
+    /// target's quantile function that it is matched with. Masses are `weights`, or equal.
     fn match_cells(
         &mut self,
         projections: &[f64],
@@ -46,8 +46,8 @@ impl Workspace {
     /// Writes the displacement of each projection to the mean of its quantile cell and returns the squared
     /// 2-Wasserstein distance between the (weighted) projections and the law.
     ///
-    /// The distance splits into the squared displacements and the spread of the law inside the cells, which does not
-    /// depend on the projections: minus twice the mass times the displacement is its exact gradient.
+    /// The distance splits into the squared displacements and the spread of the law inside the cells, which
+    /// does not depend on the projections: minus twice the mass times the displacement is its exact gradient.
     pub(crate) fn displacements(
         &mut self,
         law: &Projected,

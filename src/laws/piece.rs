@@ -20,7 +20,8 @@ pub(super) enum Rise {
 }
 
 impl Rise {
-    /// The quartic that rises by `mass`, starts and ends with these slopes (per unit of `t`) and has this mean.
+    /// The quartic that rises by `mass`, starts and ends with these slopes (per unit of `t`) and has this
+    /// mean.
     ///
     /// It is written in Bernstein form, where ordered coefficients are enough for monotonicity; data that ask
     /// for anything else (rounding, an unresolved kink) are moved to the nearest ordered coefficients.
@@ -83,7 +84,8 @@ impl Piece {
                 (mass * step * sum, self.position(mean))
             }
             Rise::Power { mass, exponent } => {
-                // With r = from/to the mass is ∝ 1 − r^e and its mean is e/(e+1) · to · (1 − r^(e+1))/(1 − r^e).
+                // With r = from/to the mass is ∝ 1 − r^e and its mean is e/(e+1) · to · (1 − r^(e+1))/(1 −
+                // r^e).
                 let log = (-step / to).ln_1p();
                 let lost = -(exponent * log).exp_m1();
                 let held = mass * to.powf(exponent) * lost;
@@ -129,7 +131,8 @@ fn root(share: f64, exponent: f64) -> f64 {
     }
 }
 
-/// Root in `[0, 1]` of `c₀ t + … + c₃ t⁴ = sought`, nondecreasing: Newton's method that never leaves its bracket.
+/// Root in `[0, 1]` of `c₀ t + … + c₃ t⁴ = sought`, nondecreasing: Newton's method that never leaves its
+/// bracket.
 fn solve([a, b, c, d]: [f64; 4], sought: f64, guess: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     let mut t = guess;

@@ -2,8 +2,8 @@
 
 /// A law whose distribution function is quadratic between knots.
 ///
-/// Over a piece that starts at `s` with width `w` and mass `m`, the probability rises by `m ((1 − k) t + k t²)` at `s + w t`; the
-/// skewness `k` in `[-1, 1]` gives the piece its mean, at `t = 1/2 + k/6`.
+/// Over a piece that starts at `s` with width `w` and mass `m`, the probability rises by `m ((1 − k) t + k
+/// t²)` at `s + w t`; the skewness `k` in `[-1, 1]` gives the piece its mean, at `t = 1/2 + k/6`.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pieces {
     knots: Vec<Knot>,
@@ -29,8 +29,8 @@ const MOST_ATOMS: usize = 2048;
 const LEVELS: usize = 1024;
 
 impl Pieces {
-    /// Pieces between increasing places, with these masses and relative places of their means in `[0, 1]`; the masses are
-    /// divided by their sum.
+    /// Pieces between increasing places, with these masses and relative places of their means in `[0, 1]`;
+    /// the masses are divided by their sum.
     pub(crate) fn new(places: &[f64], masses: &[f64], means: impl IntoIterator<Item = f64>) -> Self {
         let total: f64 = masses.iter().sum();
         let mut knots = Vec::with_capacity(places.len());
@@ -189,7 +189,8 @@ impl Pieces {
         self.for_each_cell(means.len(), |cell, mean| means[cell] = mean);
     }
 
-    /// Calls `visit(cell, mean of the quantile function)` for equal cells, in rising order. O(cells + pieces).
+    /// Calls `visit(cell, mean of the quantile function)` for equal cells, in rising order. O(cells +
+    /// pieces).
     #[inline(always)]
     pub(crate) fn for_each_cell(&self, cells: usize, mut visit: impl FnMut(usize, f64)) {
         let (n, width) = (cells as f64, 1.0 / cells as f64);

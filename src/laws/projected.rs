@@ -3,19 +3,21 @@
 use super::cube::CubeLaw;
 use super::pieces::Pieces;
 
-/// The one-dimensional law of `mu·theta`: its distribution function, its quantile function `Q`, and means of `Q`.
+/// The one-dimensional law of `mu·theta`: its distribution function, its quantile function `Q`, and means of
+/// `Q`.
 ///
-/// For the uniform cube this is the law of a sum of independent uniforms between 0 and `theta_i`, a univariate box
-/// spline[^boxes]. It depends on the sorted `|theta_i|` and on the sum of the negative components only, and it is
-/// symmetric about its mean. Other laws are piecewise: their density is linear between knots, and each piece has its exact
-/// mass and mean.
+/// For the uniform cube this is the law of a sum of independent uniforms between 0 and `theta_i`, a
+/// univariate box spline[^boxes]. It depends on the sorted `|theta_i|` and on the sum of the negative
+/// components only, and it is symmetric about its mean. Other laws are piecewise: their density is linear
+/// between knots, and each piece has its exact mass and mean.
 ///
 /// Optimal transport in one dimension sends the sample of rank `i` among `n` to the mean of `Q` over
 /// `[i/n, (i+1)/n]`[^salaun]: [`Projected::cell_means`].
 ///
 /// # Accuracy
 ///
-/// Of the cube, with `L` = Σ|theta_i|, measured against exact rational arithmetic in 90 directions of 1 to 16 dimensions:
+/// Of the cube, with `L` = Σ|theta_i|, measured against exact rational arithmetic in 90 directions of 1 to 16
+/// dimensions:
 ///
 /// | components | distribution function | `Q(u)` and means, 1e-6 < u < 1 − 1e-5 |
 /// |---|---|---|
@@ -23,13 +25,22 @@ use super::pieces::Pieces;
 /// | 5 to 16, comparable | 3e-11 | 5e-9·`L`, typically 3e-10·`L` |
 /// | 3 to 16, over up to seven orders of magnitude | 4e-8 | 5e-8·`L`, typically 1e-10·`L` |
 ///
-/// `Q` is infinitely steep at the ends of the support, where its error reaches 6e-6·`L` for u between 1e-15 and 1e-6;
-/// means over such cells, weighted by their width, are not affected. Components below 1e-8·`L` are replaced by
-/// their mean, which moves `Q` by at most half of their sum. Beyond 16 dimensions only consistency was tested.
+/// `Q` is infinitely steep at the ends of the support, where its error reaches 6e-6·`L` for u between 1e-15
+/// and 1e-6; means over such cells, weighted by their width, are not affected. Components below 1e-8·`L` are
+/// replaced by their mean, which moves `Q` by at most half of their sum. Beyond 16 dimensions only
+/// consistency was tested.
+///
+/// ```
+/// use fsot::targets::{Projected, Target};
+///
+/// // The sum of two uniforms is a triangle.
+/// let law: Projected = Target::UniformCube.project(&[1.0, 1.0]);
+/// assert_eq!((law.support(), law.mean(), law.cdf(0.5)), ((0.0, 2.0), 1.0, 0.125));
+/// ```
 ///
 /// [^boxes]: de Boor, Höllig, Riemenschneider 1993, *Box Splines*, Springer.
-/// [^salaun]: Salaün, Georgiev, Seidel, Singh 2022, "Scalable multi-class sampling via filtered sliced optimal
-///     transport", ACM TOG 41(6), <https://doi.org/10.1145/3550454.3555484>.
+/// [^salaun]: Salaün, Georgiev, Seidel, Singh 2022, "Scalable multi-class sampling via filtered sliced
+///     optimal transport", ACM TOG 41(6), <https://doi.org/10.1145/3550454.3555484>.
 #[derive(Clone, Debug)]
 pub struct Projected(Law);
 
@@ -58,8 +69,9 @@ impl Projected {
         Self(Law::Pieces(pieces))
     }
 
-    /// The law of equally likely values, in any order. Beyond 2048 of them, runs of neighbours become pieces with their mass
-    /// and, as far as a linear density can have it, mean. Without values it is no law, and refused when it is used.
+    /// The law of equally likely values, in any order. Beyond 2048 of them, runs of neighbours become pieces
+    /// with their mass and, as far as a linear density can have it, mean. Without values it is no law, and
+    /// refused when it is used.
     pub fn from_samples(values: Vec<f64>) -> Self {
         Self::of_pieces(Pieces::of_samples(values))
     }
@@ -69,8 +81,9 @@ impl Projected {
         Self::of_pieces(Pieces::of_quantile(quantile))
     }
 
-    /// The law whose density is linear between increasing `places` and in proportion to `densities` there, 0 outside. Lists of
-    /// different lengths, places that fall, densities below 0 or all 0 are no law, and refused when they are used.
+    /// The law whose density is linear between increasing `places` and in proportion to `densities` there, 0
+    /// outside. Lists of different lengths, places that fall, densities below 0 or all 0 are no law, and
+    /// refused when they are used.
     pub fn from_density(places: &[f64], densities: &[f64]) -> Self {
         Self::of_pieces(Pieces::of_density(places, densities))
     }
@@ -89,7 +102,8 @@ impl Projected {
         low.is_finite() && high.is_finite() && self.mean().is_finite() && self.variance().is_finite()
     }
 
-    /// The least and the greatest value: for the cube the sums of the negative and of the positive components.
+    /// The least and the greatest value: for the cube the sums of the negative and of the positive
+    /// components.
     pub fn support(&self) -> (f64, f64) {
         law!(self, law => law.support())
     }
@@ -116,7 +130,8 @@ impl Projected {
         law!(self, law => law.cdf(a))
     }
 
-    /// The quantile function `Q` at `u`, clamped to `[0, 1]`: nondecreasing, from one end of the support to the other.
+    /// The quantile function `Q` at `u`, clamped to `[0, 1]`: nondecreasing, from one end of the support to
+    /// the other.
     ///
     /// O(log grid).
     pub fn quantile(&self, u: f64) -> f64 {
@@ -149,8 +164,8 @@ impl Projected {
         law!(self, law => law.cell_means_into(means))
     }
 
-    /// `∫ |a − Q|` over `[lower, upper]` (in either order, clamped to `[0, 1]`): the cost of moving that cell's
-    /// mass to `a`. Never negative; split where `Q` passes `a`. O(log grid).
+    /// `∫ |a − Q|` over `[lower, upper]` (in either order, clamped to `[0, 1]`): the cost of moving that
+    /// cell's mass to `a`. Never negative; split where `Q` passes `a`. O(log grid).
     pub fn w1_cell(&self, lower: f64, upper: f64, a: f64) -> f64 {
         let (lower, upper) = (lower.min(upper).clamp(0.0, 1.0), lower.max(upper).clamp(0.0, 1.0));
         let split = self.cdf(a).clamp(lower, upper);

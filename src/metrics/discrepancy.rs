@@ -8,10 +8,9 @@ use super::samples::Samples;
 
 /// Squared L2-star discrepancy of the samples of a frame, averaged over frames.
 ///
-/// The discrepancy compares the share of samples in every box `[0, z)` with its volume,
-/// `T² = ∫ (#{x_i < z} / n − Π z_d)² dz`, and has the closed form (Warnock 1972, "Computational investigations
-/// of low-discrepancy point sets")
-/// `T² = 3^−D − 2/n Σ_i Π_d (1 − x_id²)/2 + 1/n² Σ_ij Π_d (1 − max(x_id, x_jd))`.
+/// The discrepancy compares the share of samples in every box `[0, z)` with its volume, `T² = ∫ (#{x_i < z} /
+/// n − Π z_d)² dz`, and has the closed form (Warnock 1972, "Computational investigations of low-discrepancy
+/// point sets") `T² = 3^−D − 2/n Σ_i Π_d (1 − x_id²)/2 + 1/n² Σ_ij Π_d (1 − max(x_id, x_jd))`.
 ///
 /// ```
 /// use fsot::metrics::{Discrepancy, Samples};

@@ -16,7 +16,7 @@ pub(super) struct Transform {
 }
 
 /// Buffers of one thread.
-pub(super) struct Scratch {
+pub(super) struct TransformBuffers {
     /// Input of [`Transform::forward`] in order `[frame][y][x]`; output in order `[kx][ky][kt]`.
     pub data: Vec<Complex64>,
     turned: Vec<Complex64>,
@@ -34,15 +34,15 @@ impl Transform {
         self.frames * self.height * self.width
     }
 
-    pub fn scratch(&self) -> Scratch {
+    pub fn scratch(&self) -> TransformBuffers {
         let zeros = |len| vec![Complex64::default(); len];
         let work = self.plans.iter().map(|plan| plan.get_inplace_scratch_len()).max().unwrap_or(0);
-        Scratch { data: zeros(self.len()), turned: zeros(self.len()), work: zeros(work) }
+        TransformBuffers { data: zeros(self.len()), turned: zeros(self.len()), work: zeros(work) }
     }
 
     /// Transforms `scratch.data`. The axes come out reversed, which saves turning them back.
-    pub fn forward(&self, scratch: &mut Scratch) {
-        let Scratch { data, turned, work } = scratch;
+    pub fn forward(&self, scratch: &mut TransformBuffers) {
+        let TransformBuffers { data, turned, work } = scratch;
         let [along_t, along_y, along_x] = &self.plans;
         along_x.process_with_scratch(data, work);
         let frame = self.height * self.width;

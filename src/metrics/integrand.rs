@@ -93,8 +93,9 @@ impl Integrand {
     /// A function of `dims` coordinates whose mean and variance are estimated from `points` points of the
     /// Halton sequence.
     ///
-    /// In few dimensions the mean is off by less than the `√(variance / points)` of random points, which would
-    /// add `n / points` to ratios over `n` samples: take many more points than samples. O(points · dims).
+    /// In few dimensions the mean is off by less than the `√(variance / points)` of random points, which
+    /// would add `n / points` to ratios over `n` samples: take many more points than samples. O(points ·
+    /// dims).
     ///
     /// # Errors
     /// No dimensions or points; values that are not finite, or all the same.

@@ -6,7 +6,7 @@ use rustfft::num_complex::Complex64;
 
 use super::coordinates::Coordinates;
 use super::error::MeasureError;
-use super::fft::{Scratch, Transform};
+use super::fft::{Transform, TransformBuffers};
 use super::integrands::Integrands;
 use super::samples::Samples;
 
@@ -168,7 +168,7 @@ impl Spectra {
 struct Sums {
     shape: [usize; 3],
     plane: [Transform; 2],
-    scratch: [Scratch; 2],
+    scratch: [TransformBuffers; 2],
     power: [Vec<f64>; 2],
 }
 
@@ -223,7 +223,7 @@ impl Sums {
     }
 }
 
-fn accumulate(plane: &Transform, scratch: &mut Scratch, power: &mut [f64]) {
+fn accumulate(plane: &Transform, scratch: &mut TransformBuffers, power: &mut [f64]) {
     plane.forward(scratch);
     for (power, value) in power.iter_mut().zip(&scratch.data) {
         *power += value.norm_sqr();

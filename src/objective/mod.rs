@@ -20,8 +20,19 @@ use crate::table::extent::Extent;
 
 /// An objective planned for one extent.
 ///
-/// Its value is the mean over slices of `(n / N) · W2²(X_S · theta, mu · theta)`: the level-set objective of Salaün
-/// et al. 2022 with the squared 2-Wasserstein distance as the one-dimensional cost, whose gradient exists.
+/// Its value is the mean over slices of `(n / N) · W2²(X_S · theta, mu · theta)`: the level-set objective of
+/// Salaün et al. 2022 with the squared 2-Wasserstein distance as the one-dimensional cost, whose gradient
+/// exists.
+///
+/// ```
+/// use fsot::{Config, Extent, Objective};
+///
+/// let objective = Objective::new(&Config::new(Extent::still(8, 8), 2))?;
+/// let points = vec![0.5; 128];
+/// let (value, gradient) = objective.cramer(&points)?;
+/// assert!(value > 0.0 && gradient.iter().all(|slope| slope.is_finite()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Objective {
     pub(crate) extent: Extent,
@@ -35,9 +46,9 @@ impl Objective {
     /// Checks and plans the terms of a configuration.
     ///
     /// # Errors
-    /// An empty or oversized extent, a wrong number of domains, slicing parameters outside their ranges, no terms, and
-    /// what is wrong with one of them: a weight that is not positive and finite, a dimension group that is empty, repeats
-    /// or exceeds the table's dimensions, a kernel without a positive weight.
+    /// An empty or oversized extent, a wrong number of domains, slicing parameters outside their ranges, no
+    /// terms, and what is wrong with one of them: a weight that is not positive and finite, a dimension group
+    /// that is empty, repeats or exceeds the table's dimensions, a kernel without a positive weight.
     ///
     /// ```
     /// use fsot::config::Role;
@@ -56,10 +67,11 @@ impl Objective {
 
     /// The same for the part of a table that a renderer will really consume.
     ///
-    /// A demand of other width, height or frames is folded onto the table first, which tiles it. Samples of other sites
-    /// and dimensions outside the demanded groups belong to no class any more: a subset holds its demanded samples
-    /// alone, whose errors are the only ones that a filter sees; terms lose the dimensions that are not demanded, and
-    /// classes without a demanded sample are never drawn. The cost is in proportion to what is left.
+    /// A demand of other width, height or frames is folded onto the table first, which tiles it. Samples of
+    /// other sites and dimensions outside the demanded groups belong to no class any more: a subset holds its
+    /// demanded samples alone, whose errors are the only ones that a filter sees; terms lose the dimensions
+    /// that are not demanded, and classes without a demanded sample are never drawn. The cost is in
+    /// proportion to what is left.
     ///
     /// # Errors
     /// As [`Objective::new`]; a demand for dimensions that the table does not have; a demand for nothing.
@@ -138,8 +150,8 @@ impl Objective {
         balances().any(|term| term.family.visits() > 1) && balances().any(|term| term.family.visits() == 1)
     }
 
-    /// Slices of lattice terms that a step draws per visited pixel and frame, in the mean; per class where none of the
-    /// terms has classes per pixel.
+    /// Slices of lattice terms that a step draws per visited pixel and frame, in the mean; per class where
+    /// none of the terms has classes per pixel.
     pub(crate) fn slices_per_class_and_step(&self) -> f64 {
         let steady: Vec<_> =
             self.terms.iter().filter(|term| term.steady && term.spec.role == Role::Descend).collect();

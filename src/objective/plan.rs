@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::classes::{Family, Wanted};
+use crate::classes::{FilterFamily, Wanted};
 use crate::config::{Role, Slicing, Term};
 use crate::directions::Slicer;
 use crate::directions::banks::Banks;
@@ -18,7 +18,7 @@ use crate::transport::network::Network;
 #[derive(Clone, Debug)]
 pub(crate) struct PlannedTerm {
     pub spec: Term,
-    pub family: Family,
+    pub family: FilterFamily,
     pub slicer: Slicer,
     /// Largest subset that is sorted in lanes; 0 if none is.
     pub longest: usize,
@@ -26,8 +26,8 @@ pub(crate) struct PlannedTerm {
     pub networks: Vec<Network>,
     /// Boundaries of the quantile cells, where laws are tabulated, for the most frequent sizes.
     pub grids: BTreeMap<usize, Vec<Boundary>>,
-    /// Per dimension, the square of the unit of distances along the slices in that of the coordinates; 1 but for pictures
-    /// that are not square.
+    /// Per dimension, the square of the unit of distances along the slices in that of the coordinates; 1 but
+    /// for pictures that are not square.
     pub stretch: Vec<f32>,
     /// Subsets drawn per step; need not be whole.
     pub rate: f64,
@@ -68,7 +68,7 @@ impl PlannedTerm {
         {
             return Err(TermError::TargetOnTorus { dimension });
         }
-        let family = Family::new(&term.classes, extent, wanted)?;
+        let family = FilterFamily::new(&term.classes, extent, wanted)?;
         if family.visits() == 0 {
             return Ok(None);
         }
@@ -134,9 +134,9 @@ impl PlannedTerm {
 
 /// Decides how many subsets a step draws of each term.
 ///
-/// Where pixels have classes of their own, a step is a small part of an epoch and touches are shared by weight; a slice
-/// touches as many samples as its subset holds. Elsewhere there are few classes, none of which can be spared in a step:
-/// all are drawn, and the weights of the terms enter as factors.
+/// Where pixels have classes of their own, a step is a small part of an epoch and touches are shared by
+/// weight; a slice touches as many samples as its subset holds. Elsewhere there are few classes, none of
+/// which can be spared in a step: all are drawn, and the weights of the terms enter as factors.
 pub(crate) fn share_work(terms: &mut [PlannedTerm], extent: Extent, slicing: &Slicing) {
     let descended = |term: &&PlannedTerm| term.spec.role == Role::Descend;
     let per_site = !terms.iter().any(|term| descended(&term))

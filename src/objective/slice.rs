@@ -8,12 +8,24 @@ use crate::laws::distance::Workspace;
 use crate::table::domain::Domain;
 
 /// One random draw of the objective: a class, a level, a direction.
+///
+/// ```
+/// use fsot::objective::Slice;
+/// use fsot::{Config, Extent, Objective};
+///
+/// let objective = Objective::new(&Config::new(Extent::still(2, 2), 1))?;
+/// // All four samples of the first pixel's filter, along their only dimension.
+/// let slice = Slice { term: 0, member: 0, level: 0.0, direction: vec![1.0], cut: vec![0.0] };
+/// let (value, gradient) = objective.value_and_gradient(&[0.1, 0.4, 0.6, 0.9], &[slice])?;
+/// assert!(value > 0.0 && gradient.len() == 4);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slice {
     /// Which term of the objective.
     pub term: usize,
-    /// Which class of the term's family: the number of the pixel (in C order over frames, rows, columns), of the
-    /// frame, or 0 for the whole table.
+    /// Which class of the term's family: the number of the pixel (in C order over frames, rows, columns), of
+    /// the frame, or 0 for the whole table.
     pub member: usize,
     /// Level `z` relative to the largest filter weight, in `[0, 1)`. The subset is `{j : w_j > z}`.
     pub level: f64,
@@ -33,11 +45,13 @@ struct Moved {
 }
 
 impl Objective {
-    /// Mean over `slices` of `(n / N) W2²`, times the weight of the class, and its gradient with respect to every coordinate, in `f64`.
+    /// Mean over `slices` of `(n / N) W2²`, times the weight of the class, and its gradient with respect to
+    /// every coordinate, in `f64`.
     ///
-    /// `points` are the coordinates of all samples in the order of [`crate::SampleTable`], in `[0, 1)`; the gradient has
-    /// the same order. The weighted form replaces `n` by the sum of relative weights. An empty list of slices has
-    /// value and gradient 0. O(slices × n log n), in parallel, with a fixed order of summation.
+    /// `points` are the coordinates of all samples in the order of [`crate::SampleTable`], in `[0, 1)`; the
+    /// gradient has the same order. The weighted form replaces `n` by the sum of relative weights. An empty
+    /// list of slices has value and gradient 0. O(slices × n log n), in parallel, with a fixed order of
+    /// summation.
     ///
     /// # Errors
     /// A wrong number of points, a point outside `[0, 1)`, a slice that does not fit the objective.

@@ -10,10 +10,10 @@ use crate::table::domain::Domain;
 const JITTER: f64 = 3.0;
 
 impl Objective {
-    /// Places samples by their targets: each by that of the smallest classes that hold it, whose samples become a Kronecker
-    /// sequence at a random place, jittered by some distances between neighbours and warped into the target. Parts of a
-    /// target then hold as many samples as they should, up to a few: no slice brings one from one part to another
-    /// without leaving others on the way.
+    /// Places samples by their targets: each by that of the smallest classes that hold it, whose samples
+    /// become a Kronecker sequence at a random place, jittered by some distances between neighbours and
+    /// warped into the target. Parts of a target then hold as many samples as they should, up to a few: no
+    /// slice brings one from one part to another without leaving others on the way.
     pub(crate) fn place(&self, points: &mut [f32]) {
         let mut terms: Vec<&PlannedTerm> =
             self.terms.iter().filter(|term| term.spec.role == Role::Descend).collect();

@@ -37,7 +37,8 @@ impl Optimizer {
         Ok(work)
     }
 
-    /// The work that fits into a time: all of it sweeps, unless half of it is enough for a good number of slices.
+    /// The work that fits into a time: all of it sweeps, unless half of it is enough for a good number of
+    /// slices.
     fn fit(&mut self, seconds: f64) -> Result<Work, ConfigError> {
         let per_step = self.objective.slices_per_class_and_step();
         if sweeps::check(&self.objective).is_err() {
@@ -75,8 +76,8 @@ impl Optimizer {
     }
 }
 
-/// Mean time of a call, over as many as make a reliable figure: the median of three windows, since other work may share
-/// the machine.
+/// Mean time of a call, over as many as make a reliable figure: the median of three windows, since other work
+/// may share the machine.
 fn mean_seconds(mut call: impl FnMut()) -> f64 {
     const WINDOW: Duration = Duration::from_millis(8);
     let mut means = Vec::with_capacity(3);

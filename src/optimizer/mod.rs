@@ -75,7 +75,8 @@ impl Optimizer {
         Self::with(config, objective)
     }
 
-    /// Starts from white noise and optimises only what a renderer will consume: see [`Objective::for_demand`].
+    /// Starts from white noise and optimises only what a renderer will consume: see
+    /// [`Objective::for_demand`].
     ///
     /// Everything else keeps its bits. The cost is in proportion to the demand.
     ///
@@ -145,9 +146,9 @@ impl Optimizer {
 
     /// Takes one step: descends with step size `rate`, then balances with `balance`.
     ///
-    /// All slices see the table as it is before the step, but for balanced subsets of classes of 131,072 samples or more in
-    /// the mean, and for those of a step that hold more than a million samples together: they see what the others have made
-    /// of it.
+    /// All slices see the table as it is before the step, but for balanced subsets of classes of 131,072
+    /// samples or more in the mean, and for those of a step that hold more than a million samples together:
+    /// they see what the others have made of it.
     ///
     /// For schedules of your own; [`Optimizer::run`] follows those of the configuration.
     pub fn step(&mut self, rate: f64, balance: f64) -> SliceStep {
@@ -169,8 +170,8 @@ impl Optimizer {
 
     /// Sweeps once over all samples: each moves `rate` times (at most as far as settles, see
     /// [`Sweeps`](crate::config::Sweeps)) along the gradient of the objective over all slices at once
-    /// ([`Objective::cramer`]). Half-way and at its end one slice of every class in the role of [`Role::Balance`] moves them
-    /// `balance` of the way.
+    /// ([`Objective::cramer`]). Half-way and at its end one slice of every class in the role of
+    /// [`Role::Balance`] moves them `balance` of the way.
     ///
     /// Returns the root mean square pull on a coordinate.
     ///
@@ -219,7 +220,8 @@ impl Optimizer {
         self.advance(turn, &[Picked::Each(Role::Balance)], 0.0, share);
     }
 
-    /// Brings the balances within each other, of frames and of the whole table, to an agreement after the last sweep.
+    /// Brings the balances within each other, of frames and of the whole table, to an agreement after the
+    /// last sweep.
     fn settle(&mut self, sweeps: u64, share: f64) {
         if self.objective.balances_are_nested() {
             for turn in 0..SETTLING_TURNS.min(sweeps.saturating_mul(BALANCES as u64)) {
@@ -232,6 +234,7 @@ impl Optimizer {
 /// Turns of the balance per sweep: with one alone, the bias is three times as large.
 const BALANCES: usize = 2;
 
-/// Turns of nested balances after the last sweep, at most as many as the sweeps had. 64×64×10, 200 slices and 100 sweeps:
-/// they bring the bias from 0.34 to 0.19 and the filtered error from 0.1395 to 0.1407; 16 turns bring 0.08 and 0.1412.
+/// Turns of nested balances after the last sweep, at most as many as the sweeps had. 64×64×10, 200 slices and
+/// 100 sweeps: they bring the bias from 0.34 to 0.19 and the filtered error from 0.1395 to 0.1407; 16 turns
+/// bring 0.08 and 0.1412.
 const SETTLING_TURNS: u64 = 8;

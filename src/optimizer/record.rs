@@ -5,7 +5,8 @@ use crate::config::{EndReason, Work};
 use crate::files::{KernelTaps, Metadata, RunRecord};
 
 impl Optimizer {
-    /// The metadata of the table as it is now, after a run: configuration, kernels, and how much work was done.
+    /// The metadata of the table as it is now, after a run: configuration, kernels, and how much work was
+    /// done.
     ///
     /// The bound is left out; who has measured it assigns it.
     ///

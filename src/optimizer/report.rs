@@ -9,10 +9,24 @@ use crate::sweeps::Sweeper;
 use crate::table::SampleTable;
 
 /// What a step of slices did: see [`Optimizer::step`](crate::Optimizer::step).
+///
+/// ```
+/// use fsot::{Config, Extent, Optimizer};
+///
+/// // A schedule of one's own.
+/// let mut optimizer = Optimizer::new(Config::new(Extent::still(16, 16), 2))?;
+/// let steps: Vec<_> = (0..64).map(|step| optimizer.step(0.95_f64.powi(step), 1.0)).collect();
+/// let mean = |steps: &[fsot::optimizer::SliceStep]| -> f64 {
+///     steps.iter().map(|step| step.displacement).sum::<f64>() / steps.len() as f64
+/// };
+/// assert!(mean(&steps[48..]) < mean(&steps[..16]));
+/// # Ok::<(), fsot::ConfigError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SliceStep {
-    /// Root mean square distance along the descended slices between the samples and their targets, before the step.
+    /// Root mean square distance along the descended slices between the samples and their targets, before the
+    /// step.
     pub displacement: f64,
     /// Slices drawn, over all terms.
     pub slices: u64,
@@ -20,7 +34,8 @@ pub struct SliceStep {
 
 /// What a run tells its caller after each step: a batch of slices, or a sixteenth of a sweep.
 ///
-/// Its fields cost nothing; [`StepReport::table`] and [`StepReport::loss`] are computed when they are asked for.
+/// Its fields cost nothing; [`StepReport::table`] and [`StepReport::loss`] are computed when they are asked
+/// for.
 ///
 /// ```
 /// use std::ops::ControlFlow;
@@ -45,8 +60,8 @@ pub struct StepReport<'a> {
     pub steps: u64,
     /// Slices drawn in this run, over all terms.
     pub slices: u64,
-    /// Root mean square distance along the slices between the samples and their targets, before the step; during sweeps
-    /// the root mean square of the pull on a coordinate. A noisy sign of progress.
+    /// Root mean square distance along the slices between the samples and their targets, before the step;
+    /// during sweeps the root mean square of the pull on a coordinate. A noisy sign of progress.
     pub displacement: f64,
     /// Step size.
     pub rate: f64,
@@ -83,10 +98,11 @@ impl StepReport<'_> {
         SampleTable::trusted(extent, dims, self.points())
     }
 
-    /// A running estimate of the objective: the mean of `(n / N) W2²` over at most 1,024 slices, always the same ones of
-    /// a run, so that what differs from step to step is the table.
+    /// A running estimate of the objective: the mean of `(n / N) W2²` over at most 1,024 slices, always the
+    /// same ones of a run, so that what differs from step to step is the table.
     ///
-    /// Takes a millisecond or so; [`metrics::Bound`](crate::metrics::Bound) measures with error bars and beside white noise.
+    /// Takes a millisecond or so; [`metrics::Bound`](crate::metrics::Bound) measures with error bars and
+    /// beside white noise.
     pub fn loss(&self) -> f64 {
         let Current { config, objective, loss_slices, .. } = self.current;
         let slices = loss_slices.get_or_init(|| {

@@ -20,15 +20,15 @@ impl Optimizer {
         self.run_observed(until, |_| ControlFlow::Continue(()))
     }
 
-    /// Takes steps until `until`, or until `observe` breaks off, which is called after each step. The table keeps what was
-    /// reached.
+    /// Takes steps until `until`, or until `observe` breaks off, which is called after each step. The table
+    /// keeps what was reached.
     ///
-    /// A run begins with fresh moments and at the start of the schedules; its slices and sweeps go on where the last
-    /// run's ended.
+    /// A run begins with fresh moments and at the start of the schedules; its slices and sweeps go on where
+    /// the last run's ended.
     ///
     /// # Errors
-    /// A number of seconds or an improvement outside its range; sweeps of an objective that has no closed form. Nothing is
-    /// changed then.
+    /// A number of seconds or an improvement outside its range; sweeps of an objective that has no closed
+    /// form. Nothing is changed then.
     pub fn run_observed(
         &mut self,
         until: Until,

@@ -82,8 +82,8 @@ impl<'a, 'b> Adding<'a, 'b> {
         part: &'a mut TablePart<'b>,
     ) -> Self {
         let dims = term.spec.dims.as_slice();
-        // E[theta thetaᵀ] = I / d makes d the natural step of a mean over directions; a projection goes as far as
-        // its target along each.
+        // E[theta thetaᵀ] = I / d makes d the natural step of a mean over directions; a projection goes as
+        // far as its target along each.
         let factor = match term.spec.role {
             Role::Descend => dims.len() as f32,
             Role::Balance => 1.0,

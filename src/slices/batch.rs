@@ -20,7 +20,8 @@ pub(super) const CHUNK_TOUCHES: usize = 1 << 13;
 pub(super) const IN_FLIGHT: usize = 512;
 /// See [`IN_FLIGHT`].
 pub(super) const TOUCHES_IN_FLIGHT: usize = 1 << 17;
-/// The same of balanced subsets that wait until the others have moved the table. They hold one number per sample.
+/// The same of balanced subsets that wait until the others have moved the table. They hold one number per
+/// sample.
 pub(super) const TOUCHES_WAITING: usize = 1 << 20;
 
 /// The slices that a step draws in one role.
@@ -59,7 +60,8 @@ impl Batch {
         let is_large = |draw: &SubsetDraw| is_large(&objective.terms[draw.term as usize]);
         self.large.extend(self.draws.iter().filter(|draw| is_large(draw)));
         self.draws.retain(|draw| !is_large(draw));
-        // Chunks of neighbours read and move the same part of the table. Terms come one after the other as it is.
+        // Chunks of neighbours read and move the same part of the table. Terms come one after the other as it
+        // is.
         for same_term in self.draws.chunk_by(|a, b| a.term == b.term) {
             let begin = self.order.len();
             let keys = same_term.iter().zip(begin..);
@@ -68,8 +70,8 @@ impl Batch {
         }
     }
 
-    /// Subsets per chunk and chunks in flight: fewer large subsets at a time, so that memory is bounded by samples and not
-    /// by slices times samples.
+    /// Subsets per chunk and chunks in flight: fewer large subsets at a time, so that memory is bounded by
+    /// samples and not by slices times samples.
     pub(super) fn sizes(&self, objective: &Objective, role: Role, most_touches: usize) -> (usize, usize) {
         let terms = objective.terms.iter().filter(|term| term.spec.role == role && !is_large(term));
         let largest = terms.map(|term| term.family.mean_size()).fold(1.0, f64::max) as usize;
@@ -120,8 +122,8 @@ impl Batch {
 
     /// Adds what the waiting slices pull on the samples of a part.
     ///
-    /// Each thread has a part of the table and looks for its samples in all chunks, so that every sample is added to in the
-    /// order of the draws, whatever the number of parts.
+    /// Each thread has a part of the table and looks for its samples in all chunks, so that every sample is
+    /// added to in the order of the draws, whatever the number of parts.
     pub(super) fn add_up(&self, objective: &Objective, part: &mut TablePart) {
         for chunk in self.waiting() {
             chunk.add_to(objective, in_order(&self.draws, &self.order[chunk.draws.clone()]), part);

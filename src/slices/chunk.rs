@@ -10,7 +10,7 @@ use crate::directions::cube_bank::Boundary;
 use crate::objective::Objective;
 use crate::objective::plan::PlannedTerm;
 use crate::transport::cells::LaneLaws;
-use crate::transport::gather::{Gather, Samples};
+use crate::transport::gather::{Gather, SubsetSamples};
 use crate::transport::lanes::{self, LaneBuffers};
 use crate::transport::line::{self, LineBuffers, LineLaw};
 use crate::transport::network::Network;
@@ -44,8 +44,8 @@ pub(super) struct Chunk {
     pub(super) span: (u32, u32),
     /// Samples of the subsets that are not runs.
     pub(super) samples: Vec<u32>,
-    /// Per sample of a subset and dimension of its group, the sum of `mass · displacement · theta`; of a subset with a single
-    /// direction `mass · displacement`, per sample.
+    /// Per sample of a subset and dimension of its group, the sum of `mass · displacement · theta`; of a
+    /// subset with a single direction `mass · displacement`, per sample.
     pub(super) moves: Vec<f32>,
     /// The direction of each subset that has but one.
     pub(super) thetas: Vec<f32>,
@@ -123,7 +123,7 @@ impl Chunk {
         scratch: &mut Scratch,
     ) {
         let Scratch { directions, cut, subset, weights, grid, lanes, line } = scratch;
-        let samples = run.clone().map_or(Samples::List(subset), Samples::Run);
+        let samples = run.clone().map_or(SubsetSamples::List(subset), SubsetSamples::Run);
         let (n, dims) = (samples.len(), &term.spec.dims);
         let directions = &*directions;
         let Directions { count, theta, .. } = directions;

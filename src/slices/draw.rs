@@ -3,7 +3,7 @@
 use rand::RngExt;
 use rand::seq::SliceRandom;
 
-use crate::classes::Family;
+use crate::classes::FilterFamily;
 use crate::config::Role;
 use crate::directions::Directions;
 use crate::objective::{Objective, Slice};
@@ -28,7 +28,8 @@ pub(crate) struct VisitOrder {
     members: Vec<u32>,
 }
 
-/// Fractional part of the golden ratio: multiples of it are evenly spread for any count (Weyl, van der Corput).
+/// Fractional part of the golden ratio: multiples of it are evenly spread for any count (Weyl, van der
+/// Corput).
 const GOLDEN_RATIO: f64 = 0.618_033_988_749_894_8;
 
 /// Which subsets are drawn.
@@ -157,7 +158,7 @@ impl Objective {
 }
 
 impl VisitOrder {
-    fn turn_to(&mut self, seed: u64, term: u64, epoch: u64, family: &Family) {
+    fn turn_to(&mut self, seed: u64, term: u64, epoch: u64, family: &FilterFamily) {
         if self.epoch != Some(epoch) {
             self.epoch = Some(epoch);
             family.list_visited(&mut self.members);

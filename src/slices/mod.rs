@@ -1,8 +1,9 @@
 //! One step's slices, in parallel, summed in a fixed order.
 //!
-//! The subsets of a step are cut into chunks, in the order of their classes; workers transport them into buffers of their
-//! own. Then each worker adds up the displacements of its part of the table, chunk after chunk, and moves its samples, so
-//! that no result depends on how many threads there are. Buffers are reused from step to step.
+//! The subsets of a step are cut into chunks, in the order of their classes; workers transport them into
+//! buffers of their own. Then each worker adds up the displacements of its part of the table, chunk after
+//! chunk, and moves its samples, so that no result depends on how many threads there are. Buffers are reused
+//! from step to step.
 
 mod add;
 mod batch;
@@ -62,11 +63,11 @@ struct Batches {
 /// What transports.
 struct Workers {
     arch: Arch,
-    /// What each worker needs while it transports: its own, which its caches hold. It is taken out meanwhile, so that a
-    /// worker that is lent to another chunk in the middle of one makes do with a new one.
+    /// What each worker needs while it transports: its own, which its caches hold. It is taken out meanwhile,
+    /// so that a worker that is lent to another chunk in the middle of one makes do with a new one.
     scratch: Vec<Mutex<Option<Scratch>>>,
-    /// The same for the largest subsets, which come one after the other and share their sorts between threads: a few
-    /// times the table, but once.
+    /// The same for the largest subsets, which come one after the other and share their sorts between
+    /// threads: a few times the table, but once.
     large: Scratch,
     /// What the last of them pulls.
     alone: Chunk,
@@ -90,11 +91,12 @@ impl Slices {
         self.pull = Pull::default();
     }
 
-    /// Moves the samples by the slices that a step picks: first those that descend, then those that balance. All see the
-    /// table as it is before, so that threads meet twice only; but where those that balance are very many, or very large,
-    /// the later ones see what the others have made of it.
+    /// Moves the samples by the slices that a step picks: first those that descend, then those that balance.
+    /// All see the table as it is before, so that threads meet twice only; but where those that balance are
+    /// very many, or very large, the later ones see what the others have made of it.
     ///
-    /// Returns the root mean square displacement along the descended slices before the step, and the number of slices.
+    /// Returns the root mean square displacement along the descended slices before the step, and the number
+    /// of slices.
     pub(crate) fn step(&mut self, objective: &Objective, points: &mut [f32], step: &Step) -> (f64, u64) {
         self.pull.grow(points.len());
         self.transport(objective, points, step);
@@ -132,10 +134,10 @@ impl Slices {
         ((squares / mass.max(f64::MIN_POSITIVE)).sqrt(), slices)
     }
 
-    /// Transports the slices that are picked in a step from `points`, in one role or in both. What they pull waits to be added
-    /// up; but where the first of the roles has more than should be kept waiting, most of that is added to the pull. What
-    /// the second has more than that is left to [`Slices::transport_rest`], the largest balanced subsets to
-    /// [`Slices::pull_of_large`].
+    /// Transports the slices that are picked in a step from `points`, in one role or in both. What they pull
+    /// waits to be added up; but where the first of the roles has more than should be kept waiting, most of
+    /// that is added to the pull. What the second has more than that is left to [`Slices::transport_rest`],
+    /// the largest balanced subsets to [`Slices::pull_of_large`].
     fn transport(&mut self, objective: &Objective, points: &[f32], step: &Step) {
         let Self { batches, orders, .. } = self;
         batches.descended.clear();
@@ -172,8 +174,8 @@ impl Slices {
         }
     }
 
-    /// Transports the next of the balanced slices of a step that were too many to wait with the others. Returns whether
-    /// there are any, which wait to be added up now.
+    /// Transports the next of the balanced slices of a step that were too many to wait with the others.
+    /// Returns whether there are any, which wait to be added up now.
     fn transport_rest(&mut self, objective: &Objective, points: &[f32], step: &Step) -> bool {
         let Self { batches: Batches { descended, balanced }, workers, pull, .. } = self;
         descended.waiting = 0;
@@ -184,8 +186,8 @@ impl Slices {
         balanced.waits()
     }
 
-    /// Transports the largest subsets of a role, one after the other, and adds what they pull. Returns whether there are
-    /// any.
+    /// Transports the largest subsets of a role, one after the other, and adds what they pull. Returns
+    /// whether there are any.
     fn pull_of_large(&mut self, objective: &Objective, points: &[f32], step: &Step, role: Role) -> bool {
         let Self { batches, workers, pull, .. } = self;
         let Workers { arch, large, alone: chunk, .. } = workers;

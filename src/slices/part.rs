@@ -1,4 +1,5 @@
-//! Parts of a table that threads own while samples move, and what pulls on them: what transport hands to descent.
+//! Parts of a table that threads own while samples move, and what pulls on them: what transport hands to
+//! descent.
 
 use std::ops::Range;
 
@@ -66,8 +67,8 @@ fn split(slice: &mut [f32], at: usize) -> (&mut [f32], &mut [f32]) {
 /// Sum of displacements along the directions of the slices, and how many slices there were, per coordinate.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pull {
-    /// Sum of `factor · mass · displacement · theta` over slices; the factor is the number of dimensions of the slice's
-    /// group where the term is descended, and 1 where it is balanced.
+    /// Sum of `factor · mass · displacement · theta` over slices; the factor is the number of dimensions of
+    /// the slice's group where the term is descended, and 1 where it is balanced.
     pub sums: Vec<f32>,
     /// Sum of `mass` over the slices that saw the coordinate.
     pub hits: Vec<f32>,

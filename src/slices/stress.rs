@@ -1,8 +1,8 @@
 //! The `f32` engine against its `f64` twin, [`Objective::value_and_gradient`], over random configurations.
 //!
-//! What is compared is the engine's sum of displacements along the slices of one step with the negative gradient on
-//! those very slices, before a descent turns it into a motion. The relative error is the Euclidean norm of the
-//! difference over the norm of the gradient.
+//! What is compared is the engine's sum of displacements along the slices of one step with the negative
+//! gradient on those very slices, before a descent turns it into a motion. The relative error is the
+//! Euclidean norm of the difference over the norm of the gradient.
 
 use std::cell::Cell;
 
@@ -66,7 +66,12 @@ fn cases() -> impl Strategy<Value = Case> {
         1 => Just(Filter::PerFrame),
         1 => Just(Filter::PerPixel),
     ];
-    let start = prop_oneof![3 => Just(Start::White), 1 => Just(Start::Duplicates), 1 => Just(Start::Face), 1 => Just(Start::Grid)];
+    let start = prop_oneof![
+        3 => Just(Start::White),
+        1 => Just(Start::Duplicates),
+        1 => Just(Start::Face),
+        1 => Just(Start::Grid)
+    ];
     // Banks take a while to make: few cases have many dimensions.
     let dims = prop_oneof![8 => Just(1), 26 => Just(2), 3 => 3..6_usize, 1 => 6..10_usize, 1 => Just(16)];
     let extent = (1..4_usize, 1..10_usize, 1..10_usize, 1..4_usize).prop_map(<[usize; 4]>::from);
@@ -177,8 +182,9 @@ fn compare(objective: &Objective, seed: u64, step: u64, points: &[f32], slices: 
     Compared { error: error.sqrt(), norm: norm.sqrt(), pull: worst }
 }
 
-/// Whether two samples of a slice have projections that differ by less than f32 can tell (2⁻²¹ of the support). The
-/// gradient jumps where samples swap ranks: it does not exist there, and both answers are right.
+/// Whether two samples of a slice have projections that differ by less than f32 can tell (2⁻²¹ of the
+/// support). The gradient jumps where samples swap ranks: it does not exist there, and both answers are
+/// right.
 fn nearly_tied(objective: &Objective, points: &[f32], slices: &[Slice]) -> bool {
     let wide: Vec<f64> = points.iter().map(|&point| point.into()).collect();
     let (mut samples, mut projections) = (Vec::new(), Vec::new());
@@ -231,8 +237,8 @@ fn a_thousand_configurations_agree_with_the_twin() {
         Err(TestCaseError::fail("no draw without near ties"))
     });
     println!(
-        "worst relative error {:.1e}, worst mean pull off by {:.1e}; {} of 1000 tables redrawn for near ties, without \
-         which the worst is {:.1e}",
+        "worst relative error {:.1e}, worst mean pull off by {:.1e}; {} of 1000 tables redrawn for near \
+         ties, without which the worst is {:.1e}",
         relative.get(),
         pull.get(),
         redrawn_cases.get(),
@@ -241,8 +247,8 @@ fn a_thousand_configurations_agree_with_the_twin() {
     compared.unwrap_or_else(|failed| panic!("{failed}"));
 }
 
-/// The longest subsets meet the twin as far as `f32` goes: displacements shrink with the root of the size, while
-/// projections are rounded by 1e-7 all the same, and samples closer than that swap ranks.
+/// The longest subsets meet the twin as far as `f32` goes: displacements shrink with the root of the size,
+/// while projections are rounded by 1e-7 all the same, and samples closer than that swap ranks.
 #[test]
 fn large_subsets_agree_with_the_twin() {
     let lattice = |sigma_px, form| Filter::Lattice { sigma_px, alpha: 1.0, form };
@@ -273,7 +279,8 @@ fn large_subsets_agree_with_the_twin() {
         let compared = compare(&objective, 1, step, &case.points(0), &slices);
         let relative = compared.error / compared.norm;
         println!("{name}: relative error {relative:.1e}, worst mean pull off by {:.1e}", compared.pull);
-        // In 10⁶ samples every fifth is nearly tied and goes to a cell 1e-6 away, beside displacements of 3e-4.
+        // In 10⁶ samples every fifth is nearly tied and goes to a cell 1e-6 away, beside displacements of
+        // 3e-4.
         assert!(relative < 2e-3, "{name}: {relative}");
     }
 }

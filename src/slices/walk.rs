@@ -4,8 +4,8 @@ use super::part::TablePart;
 use crate::config::Descent;
 use crate::table::domain::Domain;
 
-/// Moves the samples of a part by `rate` times their mean pull and clears the pull. `domains` has one entry per
-/// dimension.
+/// Moves the samples of a part by `rate` times their mean pull and clears the pull. `domains` has one entry
+/// per dimension.
 pub(crate) fn project(rate: f64, domains: &[Domain], part: &mut TablePart) {
     let rate = rate as f32;
     let pulls = part.sums.iter_mut().zip(&mut *part.hits).map(|(sum, hits)| take_mean(sum, hits));
@@ -61,7 +61,8 @@ impl Walker {
 }
 
 impl Walk {
-    /// Moves the samples of a part by what pulls them and clears the pull. `domains` has one entry per dimension.
+    /// Moves the samples of a part by what pulls them and clears the pull. `domains` has one entry per
+    /// dimension.
     pub(crate) fn advance(self, domains: &[Domain], part: &mut TablePart) {
         let pulls = |sums, hits| Iterator::zip(sums, hits).map(|(sum, hits)| take_mean(sum, hits));
         match self {
@@ -170,8 +171,8 @@ mod tests {
 
     #[test]
     fn adam_follows_its_recurrence() {
-        // Kingma and Ba's Algorithm 1 by hand with beta1 = 0.5, beta2 = 0.75, epsilon = 0.01, rate = 0.1 and the
-        // mean pulls 0.1 and 0.3. Step 1: m = .05, v = .0025, unbiased .1 and .01, x += .1 * .1 / .11.
+        // Kingma and Ba's Algorithm 1 by hand with beta1 = 0.5, beta2 = 0.75, epsilon = 0.01, rate = 0.1 and
+        // the mean pulls 0.1 and 0.3. Step 1: m = .05, v = .0025, unbiased .1 and .01, x += .1 * .1 / .11.
         // Step 2: m = .175, v = .024375, unbiased .175/.75 and .024375/.4375.
         let descent = Descent::Adam { rate: Schedule::constant(0.1), beta1: 0.5, beta2: 0.75, epsilon: 0.01 };
         let first = 0.5 + 0.1 * 0.1 / 0.11;

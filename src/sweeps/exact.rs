@@ -11,18 +11,18 @@ use crate::objective::Objective;
 use crate::objective::plan::PlannedTerm;
 
 impl Objective {
-    /// All slices at once: the squared sliced Cramér distance between filtered samples and target, meant over pixels, and
-    /// its gradient with respect to every coordinate, in `f64`.
+    /// All slices at once: the squared sliced Cramér distance between filtered samples and target, meant over
+    /// pixels, and its gradient with respect to every coordinate, in `f64`.
     ///
-    /// For a pixel with filter `w` it is the mean over directions `theta` of
-    /// `∫ (F − G)² ds`, where `F` is the distribution function of the samples' projections, weighted by `w`, and `G` that
-    /// of the cube: the squared filtered error of a half-space, meant over half-spaces. Terms in the role of
-    /// [`Role::Descend`](crate::config::Role::Descend) are meant by weight. Exact, without random numbers; O(samples · pairs under a filter), run in
+    /// For a pixel with filter `w` it is the mean over directions `theta` of `∫ (F − G)² ds`, where `F` is
+    /// the distribution function of the samples' projections, weighted by `w`, and `G` that of the cube: the
+    /// squared filtered error of a half-space, meant over half-spaces. Terms in the role of [`Role::Descend`]
+    /// are meant by weight. Exact, without random numbers; O(samples · pairs under a filter), run in
     /// parallel. `points` are the values of a table, in its order.
     ///
     /// # Errors
-    /// A term without a closed form: one whose classes are not a lattice's, or that sees a torus. A list of another
-    /// length than the table's, or values outside `[0, 1)`.
+    /// A term without a closed form: one whose classes are not a lattice's, or that sees a torus. A list of
+    /// another length than the table's, or values outside `[0, 1)`.
     pub fn cramer(&self, points: &[f64]) -> Result<(f64, Vec<f64>), ObjectiveError> {
         super::check(self)?;
         self.check_points(points)?;
@@ -30,8 +30,8 @@ impl Objective {
     }
 }
 
-/// Mean over the descended terms by weight, and over the pixels (by the square of what their filter holds), of the
-/// squared sliced Cramér distance; and its gradient.
+/// Mean over the descended terms by weight, and over the pixels (by the square of what their filter holds),
+/// of the squared sliced Cramér distance; and its gradient.
 fn value_and_gradient(objective: &Objective, points: &[f64]) -> (f64, Vec<f64>) {
     let (mut value, mut gradient) = (0.0, vec![0.0; points.len()]);
     let terms = || objective.terms.iter().filter(|term| term.spec.role == Role::Descend);

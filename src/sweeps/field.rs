@@ -1,7 +1,8 @@
 //! Mean distance to the uniform measure on the unit cube, `φ(x) = E|x − u|`, and its gradient.
 //!
-//! In one dimension `φ = x² − x + ½`. In more, `|v| = π^{−½} ∫₀^∞ (1 − exp(−q²|v|²)) q^{−2} dq` makes the mean over the cube
-//! factor into integrals over single coordinates, so that one quadrature over `q` serves any number of dimensions:
+//! In one dimension `φ = x² − x + ½`. In more, `|v| = π^{−½} ∫₀^∞ (1 − exp(−q²|v|²)) q^{−2} dq` makes the
+//! mean over the cube factor into integrals over single coordinates, so that one quadrature over `q` serves
+//! any number of dimensions:
 //!
 //! ```text
 //! φ(x) = π^{−½} ∫₀^∞ (1 − Π_k g(x_k)) q^{−2} dq,     ∂_k φ(x) = 2 π^{−½} ∫₀^∞ h(x_k) Π_{l≠k} g(x_l) dq,
@@ -25,8 +26,8 @@ struct Node {
     weight: f64,
 }
 
-/// Nodes of the quadrature: good for 1e-9 of the value in two and more dimensions, and for 1e-6 of the gradient, which has
-/// the sharper edges near the faces of the square.
+/// Nodes of the quadrature: good for 1e-9 of the value in two and more dimensions, and for 1e-6 of the
+/// gradient, which has the sharper edges near the faces of the square.
 const NODES: usize = 48;
 
 impl MeanDistance {
@@ -292,7 +293,8 @@ mod tests {
                 let at: Vec<f64> = rows.iter().map(|row| f64::from(row[lane])).collect();
                 field.gradient(&at, &mut exact);
                 for k in 0..dims {
-                    // Linear interpolation: (1 / 128)² / 8 times a curvature of a few units; largest at the faces.
+                    // Linear interpolation: (1 / 128)² / 8 times a curvature of a few units; largest at the
+                    // faces.
                     let error = f64::from(gradient[k][lane]) - exact[k];
                     assert!(error.abs() < 2e-4, "{dims} {k} {at:?}: {error}");
                 }

@@ -1,8 +1,9 @@
-//! All slices at once: the objective of a lattice term in closed form, without directions, sorting or randomness.
+//! All slices at once: the objective of a lattice term in closed form, without directions, sorting or
+//! randomness.
 //!
-//! With Cramér's distance `∫ (F − G)²` in place of Wasserstein's as the cost of a slice, the mean over *all* directions is
-//! the energy distance (Székely and Rizzo 2013, "Energy statistics"), times the mean length `c_d` of a projected unit
-//! vector:
+//! With Cramér's distance `∫ (F − G)²` in place of Wasserstein's as the cost of a slice, the mean over *all*
+//! directions is the energy distance (Székely and Rizzo 2013, "Energy statistics"), times the mean length
+//! `c_d` of a projected unit vector:
 //!
 //! ```text
 //! Σ_p (Σ_j w_p(j))² · E_theta ∫ (F_p − F_mu)² ds
@@ -11,8 +12,8 @@
 //! ```
 //!
 //! It is the squared filtered error of a random half-space, meant over half-spaces and pixels. A sweep visits
-//! every sample once and moves it along its exact gradient; that costs one pass over the pairs that some filter holds
-//! together, in long runs of neighbouring pixels and without any search.
+//! every sample once and moves it along its exact gradient; that costs one pass over the pairs that some
+//! filter holds together, in long runs of neighbouring pixels and without any search.
 
 mod exact;
 mod field;

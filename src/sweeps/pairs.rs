@@ -84,8 +84,8 @@ impl Pairs {
         self.reach
     }
 
-    /// Adds `factor` times the pull on the samples of a run, one row of lanes per dimension of the table: the mean unit
-    /// vector away from their neighbours, less that away from a uniform point.
+    /// Adds `factor` times the pull on the samples of a run, one row of lanes per dimension of the table: the
+    /// mean unit vector away from their neighbours, less that away from a uniform point.
     #[inline(always)]
     pub(super) fn add_pull(
         &self,
@@ -105,7 +105,8 @@ impl Pairs {
         }
     }
 
-    /// `MOST` is the number of dimensions where that is known when compiling, so that all sums stay in registers.
+    /// `MOST` is the number of dimensions where that is known when compiling, so that all sums stay in
+    /// registers.
     #[inline(always)]
     fn add<const MOST: usize>(
         &self,
@@ -174,7 +175,8 @@ impl Pairs {
     }
 }
 
-/// Squared distance that is added to every other, so that a sample is not divided by its distance from itself.
+/// Squared distance that is added to every other, so that a sample is not divided by its distance from
+/// itself.
 const NEAREST: f32 = 1e-14;
 
 #[inline(always)]
@@ -184,8 +186,9 @@ fn lanes(row: &[f32], at: usize) -> Row {
     lanes
 }
 
-/// `1 / √x` to 5e-6, by a shift of the exponent and two Newton steps (Lomont 2003, "Fast inverse square root"): the same
-/// bits on every processor, unlike instructions that estimate it, and vectorised, unlike division.
+/// `1 / √x` to 5e-6, by a shift of the exponent and two Newton steps (Lomont 2003, "Fast inverse square
+/// root"): the same bits on every processor, unlike instructions that estimate it, and vectorised, unlike
+/// division.
 #[inline(always)]
 fn inverse_root(x: f32) -> f32 {
     let guess = f32::from_bits(0x5f37_5a86 - (x.to_bits() >> 1));

@@ -1,4 +1,5 @@
-//! A table as the pair loop reads it: one plane per dimension and sample of a pixel, rows padded with their wrapped ends.
+//! A table as the pair loop reads it: one plane per dimension and sample of a pixel, rows padded with their
+//! wrapped ends.
 
 use std::ops::Range;
 
@@ -9,8 +10,8 @@ use crate::simd::{LANES, Row};
 use crate::table::domain::Domain;
 use crate::table::extent::Extent;
 
-/// Copy of a table in which the neighbours of [`LANES`] consecutive pixels are [`LANES`] consecutive numbers, also
-/// across the edge of the tile.
+/// Copy of a table in which the neighbours of [`LANES`] consecutive pixels are [`LANES`] consecutive numbers,
+/// also across the edge of the tile.
 #[derive(Clone, Debug)]
 pub(super) struct Planes {
     extent: Extent,
@@ -173,7 +174,8 @@ impl Planes {
 /// Rows that are worth handing to a thread.
 const ROWS_PER_TASK: usize = 64;
 
-/// Copies pixels of a row to their images in its margins, and behind its end where that is filled up to whole runs.
+/// Copies pixels of a row to their images in its margins, and behind its end where that is filled up to whole
+/// runs.
 #[inline(always)]
 fn repeat(row: &mut [f32], margin: usize, width: usize, pixels: Range<usize>) {
     // A margin is at most as wide as the tile, so that there is one image on either side.

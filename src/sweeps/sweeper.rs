@@ -15,14 +15,15 @@ use crate::random::{self, Purpose};
 use crate::simd::{self, LANES, Row};
 use crate::table::domain::Domain;
 
-/// Steps per sweep. The samples of a step move together, as if the others of that step stood still; with few of them next
-/// to each other, large steps are safe.
+/// Steps per sweep. The samples of a step move together, as if the others of that step stood still; with few
+/// of them next to each other, large steps are safe.
 pub(crate) const STEPS: usize = 16;
 
 /// A table on its way through sweeps.
 ///
-/// A *run* of [`LANES`] consecutive pixels is the unit of work. Each step of a sweep moves a random sixteenth of the
-/// runs; their pulls are computed in parallel from the same table, then applied, so that nothing depends on threads.
+/// A *run* of [`LANES`] consecutive pixels is the unit of work. Each step of a sweep moves a random sixteenth
+/// of the runs; their pulls are computed in parallel from the same table, then applied, so that nothing
+/// depends on threads.
 pub(crate) struct Sweeper {
     arch: Arch,
     terms: Vec<Pairs>,
@@ -112,8 +113,8 @@ impl Sweeper {
         }
     }
 
-    /// Moves the samples of one step of the sweep by `rate` times their pull. Returns the pulls' mean square. What moves is
-    /// the copy, until it is stored.
+    /// Moves the samples of one step of the sweep by `rate` times their pull. Returns the pulls' mean square.
+    /// What moves is the copy, until it is stored.
     pub(crate) fn step(&mut self, step: usize, rate: f64, domains: &[Domain]) -> MeanSquare {
         let rate = rate.min(self.most);
         let Self { arch, terms, factors, margin, planes, dims, order, pulls, ahead, .. } = self;
@@ -192,8 +193,8 @@ impl MeanSquare {
     }
 }
 
-/// Largest motion of all neighbours together, in units of what they see, that settles: at one sample per pixel, from 1.3 on
-/// nothing did; at 0.6 tables of many samples are slower.
+/// Largest motion of all neighbours together, in units of what they see, that settles: at one sample per
+/// pixel, from 1.3 on nothing did; at 0.6 tables of many samples are slower.
 const COLLECTIVE: f64 = 1.0;
 
 /// Runs per task: some ten microseconds.

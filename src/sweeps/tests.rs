@@ -117,7 +117,8 @@ fn pulls(objective: &Objective, points: &[f32]) -> Vec<f32> {
     all
 }
 
-/// One term alone: the pull is minus the gradient, times what `Sweeps` calls natural, over the share of one sample.
+/// One term alone: the pull is minus the gradient, times what `Sweeps` calls natural, over the share of one
+/// sample.
 fn assert_pull_is_gradient(objective: &Objective, natural: f64) {
     let (extent, dims) = (objective.extent(), objective.dims());
     let points = random::uniforms(5, extent.samples() * dims);
@@ -184,7 +185,7 @@ fn terms_share_a_coordinate_by_weight() {
             2 => of_three[coordinate],
             _ => (of_pair[coordinate] + 2.0 * of_three[coordinate]) / 3.0,
         };
-        assert!((both[coordinate] - expected).abs() < 1e-5 * (1.0 + expected.abs()), "{coordinate}"); // roundings of f32
+        assert!((both[coordinate] - expected).abs() < 1e-5 * (1.0 + expected.abs()), "{coordinate}");
     }
 }
 

@@ -4,8 +4,15 @@ use serde::{Deserialize, Serialize};
 
 /// Topology of one dimension of the sample space `[0, 1)`.
 ///
-/// Integrands of a renderer are not periodic, so [`Domain::Interval`] is the default; on a torus the table may
-/// be shifted by any offset per dimension (Cranley–Patterson rotation) without changing its quality.
+/// Integrands of a renderer are not periodic, so [`Domain::Interval`] is the default; on a torus the table
+/// may be shifted by any offset per dimension (Cranley–Patterson rotation) without changing its quality.
+///
+/// ```
+/// use fsot::config::Domain;
+///
+/// assert_eq!(Domain::Torus.admit(1.25), 0.25);
+/// assert_eq!(Domain::Interval.admit(-0.1), 0.0);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Domain {
@@ -20,7 +27,8 @@ pub enum Domain {
 pub const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
 
 impl Domain {
-    /// Brings a finite coordinate back into `[0, 1)`: clamped to the faces of an interval, wrapped on a torus.
+    /// Brings a finite coordinate back into `[0, 1)`: clamped to the faces of an interval, wrapped on a
+    /// torus.
     ///
     /// The result is never 1.0, also where rounding would give it. What is not a number becomes 0.
     #[inline(always)]

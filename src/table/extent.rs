@@ -8,6 +8,14 @@ use serde::{Deserialize, Serialize};
 use crate::error::ExtentError;
 
 /// Number of frames, rows, columns and samples per pixel of a table; every one at least 1.
+///
+/// ```
+/// use fsot::Extent;
+///
+/// let extent = Extent::animation(8, 64, 32).with_spp(4);
+/// assert_eq!((extent.frames, extent.height, extent.width, extent.spp), (8, 64, 32, 4));
+/// assert_eq!((extent.sites(), extent.samples()), (8 * 64 * 32, 4 * 8 * 64 * 32));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Extent {
     /// Frames; the animation wraps, frame `frames` is frame 0 again.
@@ -24,6 +32,14 @@ pub struct Extent {
 pub const MOST_DIMS: usize = 64;
 
 /// Position of a pixel of one frame.
+///
+/// ```
+/// use fsot::{Extent, Site};
+///
+/// let extent = Extent::animation(2, 4, 8);
+/// let site = Site { frame: 1, y: 2, x: 3 };
+/// assert_eq!(extent.site(extent.site_index(site)), site);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Site {
     /// Frame, in `0..frames`.
@@ -90,8 +106,8 @@ impl Extent {
         }
     }
 
-    /// Checks that no axis is empty, that there are at most [`MOST_DIMS`] dimensions, and that `samples * dims` values can
-    /// be numbered with 31 bits.
+    /// Checks that no axis is empty, that there are at most [`MOST_DIMS`] dimensions, and that `samples *
+    /// dims` values can be numbered with 31 bits.
     ///
     /// # Errors
     /// The first axis that is empty, or what there is too much of.

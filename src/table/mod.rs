@@ -14,6 +14,17 @@ use crate::table::extent::{Extent, Site};
 ///
 /// A renderer reads pixel `(x mod width, y mod height)` of frame `t mod frames` and uses its `spp` points of
 /// `[0, 1)^dims`. Values are `f32` in C order, the order of the axes above.
+///
+/// ```
+/// use fsot::{Extent, SampleTable, Site};
+///
+/// let table = SampleTable::white_noise(Extent::still(16, 16), 2, 0)?;
+/// // As a texture does, the table tiles the picture.
+/// let [here, far] = [5, 16 + 5].map(|x| table.sample(Site { frame: 0, y: 3, x }, 0));
+/// assert_eq!(here, far);
+/// assert_eq!(table.view()[[0, 3, 5, 0, 1]], here[1]);
+/// # Ok::<(), fsot::files::TableError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampleTable {
     extent: Extent,

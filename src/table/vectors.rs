@@ -6,6 +6,16 @@ use crate::error::GroupError;
 use crate::table::SampleTable;
 
 /// How two coordinates in `[0, 1)` become a vector. All three preserve area, so that uniform stays uniform.
+///
+/// ```
+/// use fsot::targets::VectorMap;
+/// use fsot::{Extent, SampleTable};
+///
+/// let table = SampleTable::white_noise(Extent::still(8, 8), 2, 0)?;
+/// let directions = table.mapped(VectorMap::CosineHemisphere, [0, 1])?;
+/// assert_eq!(directions.shape(), [1, 8, 8, 1, 3]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VectorMap {
     /// The unit disc, by the concentric map[^disc]: two components.
@@ -69,7 +79,8 @@ fn disc(u: f64, v: f64) -> [f64; 2] {
 impl SampleTable {
     /// Two dimensions of the table as vectors `[frame, y, x, sample, component]`.
     ///
-    /// Components lie in `[-1, 1]`; `ndarray_npy::write_npy` writes them, and `0.5 * value + 0.5` fits them into a texture.
+    /// Components lie in `[-1, 1]`; `ndarray_npy::write_npy` writes them, and `0.5 * value + 0.5` fits them
+    /// into a texture.
     ///
     /// # Errors
     /// A dimension that the table does not have, or the same one twice.

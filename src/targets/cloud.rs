@@ -5,10 +5,19 @@ use serde::{Deserialize, Serialize};
 use crate::error::TargetError;
 use crate::laws::Pieces;
 
-/// Equally weighted points of the unit cube that stand for a measure: draws of any sampler, or points to be thinned out.
+/// Equally weighted points of the unit cube that stand for a measure: draws of any sampler, or points to be
+/// thinned out.
 ///
-/// Along each direction the law of up to 2048 points is exact; of more, neighbours are merged into pieces with their mass and
-/// mean.
+/// Along each direction the law of up to 2048 points is exact; of more, neighbours are merged into pieces
+/// with their mass and mean.
+///
+/// ```
+/// use fsot::targets::{PointCloud, Target};
+///
+/// let cloud = PointCloud::new(2, vec![0.25, 0.2, 0.75, 0.6])?;
+/// assert_eq!(Target::Cloud(cloud.into()).project(&[1.0, 0.0]).mean(), 0.5);
+/// # Ok::<(), fsot::targets::TargetError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Unchecked")]
 pub struct PointCloud {

@@ -5,7 +5,32 @@ use crate::named::{ByName, Named};
 
 /// A target measure of the caller's own, on the unit cube.
 ///
-/// It is asked for the laws of a fixed set of directions when an objective is planned, and never during the optimisation.
+/// It is asked for the laws of a fixed set of directions when an objective is planned, and never during the
+/// optimisation.
+///
+/// ```
+/// use fsot::targets::{Measure, Projected, Target};
+///
+/// /// Uniform on the diagonal of the square.
+/// #[derive(Debug)]
+/// struct Diagonal;
+///
+/// impl Measure for Diagonal {
+///     fn name(&self) -> &str {
+///         "diagonal"
+///     }
+///     fn dims(&self) -> usize {
+///         2
+///     }
+///     fn project(&self, direction: &[f64]) -> Projected {
+///         let length = direction[0] + direction[1];
+///         Projected::from_quantile(move |u| if length < 0.0 { (1.0 - u) * length } else { u * length })
+///     }
+/// }
+///
+/// let target = Target::custom(Diagonal);
+/// assert!((target.project(&[0.6, 0.8]).mean() - 0.7).abs() < 1e-12);
+/// ```
 pub trait Measure: std::fmt::Debug + Send + Sync {
     /// Name for messages and for a serialised [`crate::Config`].
     fn name(&self) -> &str;

@@ -6,11 +6,23 @@ use crate::error::{RangeError, TargetError};
 use crate::laws::Pieces;
 
 /// A density on the unit square, constant over each pixel of a picture. Pixel `(row, column)` covers
-/// `[column, column + 1) / width × [row, row + 1) / height`: the first coordinate of a point runs to the right, the second
-/// down.
+/// `[column, column + 1) / width × [row, row + 1) / height`: the first coordinate of a point runs to the
+/// right, the second down.
 ///
-/// Distances are measured in the picture: its longer side is 1 long, so that a picture of any aspect ratio gets an even
-/// arrangement of points.
+/// Distances are measured in the picture: its longer side is 1 long, so that a picture of any aspect ratio
+/// gets an even arrangement of points.
+///
+/// ```
+/// use fsot::targets::Density;
+/// use fsot::{Config, Until};
+///
+/// // Three quarters of the points go to the right.
+/// let density = Density::new(2, 1, vec![1.0, 3.0])?;
+/// let points = Config::stippling(64, density).optimize(Until::SlicesPerClass(512))?;
+/// let right = points.values().chunks_exact(2).filter(|point| point[0] > 0.5).count();
+/// assert!((46..=50).contains(&right));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Unchecked")]
 pub struct Density {
@@ -47,7 +59,8 @@ impl Density {
     /// A density in proportion to `values`, row by row from the top.
     ///
     /// # Errors
-    /// A side of 0 or beyond 65535, a wrong number of values, a value that is negative or not finite, no value above 0.
+    /// A side of 0 or beyond 65535, a wrong number of values, a value that is negative or not finite, no
+    /// value above 0.
     pub fn new(width: usize, height: usize, values: Vec<f32>) -> Result<Self, TargetError> {
         Self::check_size([width, height])?;
         if values.len() != width * height {
@@ -132,10 +145,11 @@ impl Density {
 
     /// The law of the projection on a direction.
     ///
-    /// A pixel projects on a trapezoid, whose density has kinks where its corners project, with slopes that change by `±1 / (|px|
-    /// |py|)` for pixels that project on lengths `px` and `py`. All kinks of the picture lie at corners of the grid and sum up to
-    /// the mixed second difference of the values there, so that one pass over the corners gives slope, density, distribution
-    /// function and its integral at the knots, exactly. The density between knots is then linear, with the exact mass and mean.
+    /// A pixel projects on a trapezoid, whose density has kinks where its corners project, with slopes that
+    /// change by `±1 / (|px| |py|)` for pixels that project on lengths `px` and `py`. All kinks of the
+    /// picture lie at corners of the grid and sum up to the mixed second difference of the values there, so
+    /// that one pass over the corners gives slope, density, distribution function and its integral at the
+    /// knots, exactly. The density between knots is then linear, with the exact mass and mean.
     pub(super) fn project(&self, direction: &[f64]) -> Pieces {
         let [x, y] = [0, 1].map(|axis| direction.get(axis).copied().unwrap_or(0.0));
         let greater = x.abs().max(y.abs());

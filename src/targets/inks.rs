@@ -8,6 +8,15 @@ use super::picture::Picture;
 use crate::error::{PictureError, TargetError};
 
 /// Density of each ink of a picture: cyan, magenta, yellow and black, 0 to 1 per pixel.
+///
+/// ```
+/// use fsot::targets::{Inks, Picture};
+///
+/// // Cyan and black, side by side.
+/// let picture = Picture::new(2, 1, vec![[0.0, 1.0, 1.0, 1.0], [0.0, 0.0, 0.0, 1.0]])?;
+/// assert_eq!(Inks::from_picture(&picture)?.counts(100), [50, 0, 0, 50]);
+/// # Ok::<(), fsot::targets::TargetError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Inks {
     /// Columns and rows.

@@ -29,8 +29,15 @@ pub use {inks::Inks, picture::Picture, tone::Tone};
 
 /// The measure that a class's samples should resemble.
 ///
-/// Sliced transport compares samples and target along one direction at a time, so a target is used through its
-/// one-dimensional laws only: see [`Target::project`].
+/// Sliced transport compares samples and target along one direction at a time, so a target is used through
+/// its one-dimensional laws only: see [`Target::project`].
+///
+/// ```
+/// use fsot::targets::Target;
+///
+/// let law = Target::UniformCube.project(&[0.6, 0.8]);
+/// assert!((law.mean() - 0.7).abs() < 1e-12);
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -57,8 +64,9 @@ impl Target {
     /// The direction need not be a unit vector: its components must be finite, with a finite sum of absolute
     /// values, and may have any sign. A zero or empty direction gives the point mass at 0.
     ///
-    /// Cube: O(`D`·grid), for a grid of at most eight pieces up to `D` = 4 and of some hundreds beyond or where a component is
-    /// below 1e-4 of the sum. Density: O(pixels). Cloud: O(points · log points). See [`Projected`] for the accuracy.
+    /// Cube: O(`D`·grid), for a grid of at most eight pieces up to `D` = 4 and of some hundreds beyond or
+    /// where a component is below 1e-4 of the sum. Density: O(pixels). Cloud: O(points · log points). See
+    /// [`Projected`] for the accuracy.
     pub fn project(&self, direction: &[f64]) -> Projected {
         match self {
             Target::UniformCube => Projected::of_cube(direction),
@@ -78,8 +86,8 @@ impl Target {
         }
     }
 
-    /// Lengths of the sides of the unit cube in the space where distances are measured: 1, but for pictures that are not
-    /// square.
+    /// Lengths of the sides of the unit cube in the space where distances are measured: 1, but for pictures
+    /// that are not square.
     pub fn scales(&self, dims: usize) -> Vec<f64> {
         match self {
             Target::Density(density) => density.scales().to_vec(),

@@ -9,7 +9,8 @@ fn law(direction: &[f64]) -> Projected {
     Target::UniformCube.project(direction)
 }
 
-/// Density of a sum of uniforms on `[0, wᵢ)` by the positive, stable recurrence of box splines: exponential cost.
+/// Density of a sum of uniforms on `[0, wᵢ)` by the positive, stable recurrence of box splines: exponential
+/// cost.
 fn density(x: f64, widths: &[f64]) -> f64 {
     let sum: f64 = widths.iter().sum();
     if x < 0.0 || x >= sum {
@@ -97,7 +98,8 @@ fn one_component_is_linear_and_two_are_a_trapezoid() {
         assert!((line.quantile(u) - (2.0 * u - 2.0)).abs() < 1e-15);
         assert!((line.quantile_integral(u) - (u * u - 2.0 * u)).abs() < 1e-15);
     }
-    // a = 0.8, b = 0.6: Q = √(2ab u) below u = b/2a = 0.375, then a·u + b/2, then mirrored; 0.6 less for the sign.
+    // a = 0.8, b = 0.6: Q = √(2ab u) below u = b/2a = 0.375, then a·u + b/2, then mirrored; 0.6 less for the
+    // sign.
     let law = law(&[-0.6, 0.8]);
     for u in [1e-12, 0.01, 0.2, 0.374_f64] {
         let tail = (0.96 * u).sqrt();
@@ -127,8 +129,8 @@ fn equal_components_are_irwin_halls() {
 
 #[test]
 fn up_to_five_components_agree_with_the_recurrence() {
-    // Four components are exact: what remains is rounding over the narrowest width (1e-7: 1e-9 of L). Five have one
-    // degree more than the pieces: 6e-10 where one component dominates four of a thousandth.
+    // Four components are exact: what remains is rounding over the narrowest width (1e-7: 1e-9 of L). Five
+    // have one degree more than the pieces: 6e-10 where one component dominates four of a thousandth.
     for direction in directions().iter().filter(|direction| direction.len() <= 5) {
         let law = law(direction);
         let (low, high) = law.support();
@@ -151,8 +153,8 @@ fn up_to_five_components_agree_with_the_recurrence() {
 
 #[test]
 fn comparable_components_agree_with_the_fourier_series() {
-    // The series' tail is below (L/(4000 π w))^D < 1e-13 from five components on; the law's own error is below 1e-9·L
-    // except where the density is small: hence the share of 1/u.
+    // The series' tail is below (L/(4000 π w))^D < 1e-13 from five components on; the law's own error is
+    // below 1e-9·L except where the density is small: hence the share of 1/u.
     for dims in 5..=16 {
         for spread in [0.0, 0.1, 0.37] {
             let widths: Vec<f64> = (0..dims).map(|i| 1.0 + spread * ((i * 7) % 5) as f64).collect();
@@ -174,7 +176,8 @@ fn comparable_components_agree_with_the_fourier_series() {
     }
 }
 
-/// `[widths, x, F(x), ∫₀ᵘ Q]` with `u = F(x)`, from the alternating sum in integers (Python, `fractions.Fraction`):
+/// `[widths, x, F(x), ∫₀ᵘ Q]` with `u = F(x)`, from the alternating sum in integers (Python,
+/// `fractions.Fraction`):
 ///
 /// ```text
 /// S = subset sums s with sign g;  F = sum(g*(x-s)**D for s < x) / (D! * prod(w))
@@ -209,7 +212,8 @@ fn many_scales_agree_with_exact_arithmetic() {
 
 #[test]
 fn monte_carlo_agrees_in_awkward_directions() {
-    // 2^17 draws; 12 directions × 7 points, each within 5 standard errors: significance 84 · 6e-7 = 5e-5, at a fixed seed.
+    // 2^17 draws; 12 directions × 7 points, each within 5 standard errors: significance 84 · 6e-7 = 5e-5, at
+    // a fixed seed.
     let mut generator = Xoshiro256PlusPlus::seed_from_u64(7);
     let draws = 1 << 17;
     for direction in directions().iter().filter(|direction| direction.len() % 5 == 1 || direction.len() > 14)
@@ -270,8 +274,8 @@ fn check_consistency(direction: &[f64]) {
         }
     }
 
-    // The means' squares lack the variances within cells: 2e-10 for a uniform; otherwise mostly those of the two end
-    // cells, of mass 5e-5 and a spread of at most 0.1·L.
+    // The means' squares lack the variances within cells: 2e-10 for a uniform; otherwise mostly those of the
+    // two end cells, of mass 5e-5 and a spread of at most 0.1·L.
     let square: f64 = law.cell_means(20_000).map(|mean| mean / 20_000.0 * mean).sum();
     assert!((square - law.second_moment()).abs() <= 1e-6 * length * length, "{direction:?} {square}");
 
@@ -306,7 +310,8 @@ proptest! {
 
 #[test]
 fn cost_of_a_cell_is_the_integral_of_the_distance() {
-    // Midpoint rule of 20000 steps over a Lipschitz integrand away from the ends: 1e-4² · slope, and the kink at a.
+    // Midpoint rule of 20000 steps over a Lipschitz integrand away from the ends: 1e-4² · slope, and the kink
+    // at a.
     for direction in [vec![0.5], vec![0.6, -0.8], vec![1.0; 7], vec![1.0, 0.2, -0.1, 0.01]] {
         let law = law(&direction);
         let length = law.support().1 - law.support().0;

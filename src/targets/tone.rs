@@ -7,6 +7,15 @@ use super::picture::Picture;
 use crate::error::{PictureError, TargetError};
 
 /// Which part of a picture draws points.
+///
+/// ```
+/// use fsot::targets::{Density, Picture, Tone};
+///
+/// let picture = Picture::new(2, 1, vec![[0.25, 0.25, 0.25, 1.0], [1.0, 1.0, 1.0, 1.0]])?;
+/// assert_eq!(Density::from_picture(&picture, Tone::Bright)?.values()[0], 0.25);
+/// assert_eq!(Density::from_picture(&picture, Tone::Dark)?.values()[0], 0.75);
+/// # Ok::<(), fsot::targets::TargetError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tone {
     /// What is dark, as ink does on paper.

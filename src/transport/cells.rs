@@ -1,9 +1,9 @@
 //! Quantile-cell means of the projected uniform cube, for all lanes at once.
 //!
-//! The `f64` twin of everything here is [`crate::targets::Projected`]. In one and two dimensions the law of a projection
-//! has a closed form; in more, a bank holds tabulated laws of a fixed set of directions
-//! ([`crate::directions::cube_bank`]), and sign changes and permutations of the axes (which leave a law unchanged up to a
-//! shift) make many directions out of each.
+//! The `f64` twin of everything here is [`crate::targets::Projected`]. In one and two dimensions the law of a
+//! projection has a closed form; in more, a bank holds tabulated laws of a fixed set of directions
+//! ([`crate::directions::cube_bank`]), and sign changes and permutations of the axes (which leave a law
+//! unchanged up to a shift) make many directions out of each.
 
 use pulp::Simd;
 
@@ -29,8 +29,8 @@ pub(crate) enum SymmetricLaws<'a> {
 }
 
 impl<'a> LaneLaws<'a> {
-    /// The laws of these directions, for subsets whose quantile cells end at the boundaries of `grid` (only asked where
-    /// laws are tabulated).
+    /// The laws of these directions, for subsets whose quantile cells end at the boundaries of `grid` (only
+    /// asked where laws are tabulated).
     #[inline(always)]
     pub(crate) fn new<S: Simd>(
         simd: S,
@@ -62,8 +62,9 @@ impl<'a> LaneLaws<'a> {
 }
 
 impl SymmetricLaws<'_> {
-    /// Writes the means of the quantile function over the lower `n / 2` of `n` equal cells. Those of the upper half are
-    /// their negatives, and that of a cell in the middle is 0. `root_means` are those of [`root_mean`].
+    /// Writes the means of the quantile function over the lower `n / 2` of `n` equal cells. Those of the
+    /// upper half are their negatives, and that of a cell in the middle is 0. `root_means` are those of
+    /// [`root_mean`].
     #[inline(always)]
     pub(crate) fn lower_cell_means<S: Simd>(&self, simd: S, n: usize, root_means: &[f32], cells: &mut [Row]) {
         match self {
@@ -161,8 +162,8 @@ impl Trapezoid {
 
 /// Quantile cells of one vector of trapezoids, counted from the lower end of the support.
 ///
-/// In units of cells the rising edge of the trapezoid ends inside cell `split`, whose mean is `split_mean`. Before it
-/// the quantile is `sqrt(2 a b u)`, after it `a u + b / 2`, less half the extent.
+/// In units of cells the rising edge of the trapezoid ends inside cell `split`, whose mean is `split_mean`.
+/// Before it the quantile is `sqrt(2 a b u)`, after it `a u + b / 2`, less half the extent.
 struct Cells<S: Simd> {
     split: S::f32s,
     split_mean: S::f32s,

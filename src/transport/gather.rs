@@ -4,16 +4,16 @@ use std::ops::Range;
 
 /// Numbers of the samples of a subset.
 #[derive(Clone)]
-pub(crate) enum Samples<'a> {
+pub(crate) enum SubsetSamples<'a> {
     List(&'a [u32]),
     Run(Range<u32>),
 }
 
-impl Samples<'_> {
+impl SubsetSamples<'_> {
     pub(crate) fn len(&self) -> usize {
         match self {
-            Samples::List(list) => list.len(),
-            Samples::Run(run) => run.len(),
+            SubsetSamples::List(list) => list.len(),
+            SubsetSamples::Run(run) => run.len(),
         }
     }
 }
@@ -21,7 +21,7 @@ impl Samples<'_> {
 /// Where the samples of a subset stand, seen from one dimension group.
 pub(crate) struct Gather<'a> {
     /// Numbers of the samples.
-    pub samples: Samples<'a>,
+    pub samples: SubsetSamples<'a>,
     /// Values of the whole table.
     pub points: &'a [f32],
     /// Dimensions of the table.
@@ -33,11 +33,11 @@ pub(crate) struct Gather<'a> {
 }
 
 impl Gather<'_> {
-    /// Writes the coordinates of a listed subset, sample by sample, from the middle of the cube. A run is none that the
-    /// lanes take.
+    /// Writes the coordinates of a listed subset, sample by sample, from the middle of the cube. A run is
+    /// none that the lanes take.
     #[inline(always)]
     pub(super) fn gather(&self, coordinates: &mut [f32]) {
-        let Samples::List(list) = self.samples else { return };
+        let SubsetSamples::List(list) = self.samples else { return };
         let values = list.iter().map(|&sample| self.sample(sample));
         if let ([x, y], [None, None]) = (self.dims, self.cut) {
             // The common case by itself, without a choice per coordinate.
@@ -58,11 +58,11 @@ impl Gather<'_> {
     #[inline(always)]
     pub(crate) fn project(&self, first: usize, theta: &impl Fn(usize) -> f32, projections: &mut [f32]) {
         match &self.samples {
-            Samples::List(list) => {
+            SubsetSamples::List(list) => {
                 let values = list[first..].iter().map(|&sample| self.sample(sample));
                 self.project_each(values, theta, projections);
             }
-            Samples::Run(run) => {
+            SubsetSamples::Run(run) => {
                 let points = &self.points[(run.start as usize + first) * self.stride..];
                 self.project_each(points.chunks_exact(self.stride), theta, projections);
             }

@@ -1,9 +1,9 @@
 //! Sixteen slices of one subset at once.
 //!
-//! The directions of a subset ride in the lanes of a vector: the subset is gathered once, its projections become
-//! integer keys (value in the high bits, position in the low bits), a sorting network moves all lanes alike, and
-//! the position comes out of the sort for free. Plain arrays of [`LANES`] numbers: the compiler turns them into
-//! whatever vectors the processor has, without changing a bit of the result.
+//! The directions of a subset ride in the lanes of a vector: the subset is gathered once, its projections
+//! become integer keys (value in the high bits, position in the low bits), a sorting network moves all lanes
+//! alike, and the position comes out of the sort for free. Plain arrays of [`LANES`] numbers: the compiler
+//! turns them into whatever vectors the processor has, without changing a bit of the result.
 
 use pulp::Simd;
 
@@ -65,11 +65,11 @@ impl LaneBuffers {
     }
 }
 
-/// Transports a subset along all lanes and writes, per sample and dimension of the group, the sum over lanes of
-/// `displacement * theta` to `moves`. Returns the sum of squared displacements.
+/// Transports a subset along all lanes and writes, per sample and dimension of the group, the sum over lanes
+/// of `displacement * theta` to `moves`. Returns the sum of squared displacements.
 ///
-/// `theta` holds one row per dimension of the group; unused lanes are zero and move nothing. `network` sorts lists of
-/// the subset's length, which is at most [`LONGEST`].
+/// `theta` holds one row per dimension of the group; unused lanes are zero and move nothing. `network` sorts
+/// lists of the subset's length, which is at most [`LONGEST`].
 #[inline(always)]
 pub(crate) fn transport<S: Simd>(
     simd: S,
@@ -206,8 +206,8 @@ fn match_all_targets(keys: &[[u32; LANES]], means: &[Row], targets: &mut [Row; L
     }
 }
 
-/// Writes the first steps of the sum over lanes of `displacement * theta`, per sample and dimension. Returns the sums
-/// of squared displacements.
+/// Writes the first steps of the sum over lanes of `displacement * theta`, per sample and dimension. Returns
+/// the sums of squared displacements.
 #[inline(always)]
 fn displace(projections: &[Row], targets: &[Row], theta: &[Row], quarters: &mut [[f32; LANES / 4]]) -> Row {
     match theta.len() {

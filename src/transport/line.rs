@@ -114,7 +114,8 @@ impl<'a> LineLaw<'a> {
         Self { lowest, extent, cells }
     }
 
-    /// Visits `n` equal cells with the means of the quantile function over them; symmetric ones from both ends to the middle.
+    /// Visits `n` equal cells with the means of the quantile function over them; symmetric ones from both
+    /// ends to the middle.
     #[inline(always)]
     fn for_each_cell(&self, n: usize, mut visit: impl FnMut(usize, f64)) {
         let &LineLaw { lowest, extent, ref cells } = self;
@@ -170,8 +171,8 @@ impl<'a> LineLaw<'a> {
     }
 }
 
-/// Transports a subset along one direction and puts `(position, mass * displacement)` for each of its samples. Masses are
-/// `weights`, or 1. Returns the sum of `mass * displacement²`.
+/// Transports a subset along one direction and puts `(position, mass * displacement)` for each of its
+/// samples. Masses are `weights`, or 1. Returns the sum of `mass * displacement²`.
 #[inline(always)]
 pub(crate) fn transport(
     subset: &Gather,

@@ -1,9 +1,10 @@
 //! Oblivious sorting of many short lists at once.
 //!
-//! Places to compare do not depend on the data, so that all lanes sort together. Blocks of eight rows are sorted in
-//! registers; a list of more rows is sorted by a network of blocks, where comparing two blocks means merging them and
-//! putting the lower half first (Knuth, The Art of Computer Programming, volume 3, exercise 5.3.4-38). That takes
-//! about a quarter more comparisons than a network of rows, but an eighth of the loads and stores.
+//! Places to compare do not depend on the data, so that all lanes sort together. Blocks of eight rows are
+//! sorted in registers; a list of more rows is sorted by a network of blocks, where comparing two blocks
+//! means merging them and putting the lower half first (Knuth, The Art of Computer Programming, volume 3,
+//! exercise 5.3.4-38). That takes about a quarter more comparisons than a network of rows, but an eighth of
+//! the loads and stores.
 
 use pulp::Simd;
 
@@ -82,8 +83,8 @@ fn columns<S: Simd>() -> usize {
     LANES / S::U32_LANES
 }
 
-/// Orders pairs of rows, given as literals so that all of them stay in registers; those that touch a row from `$rows`
-/// on are left out, as if it held the largest keys.
+/// Orders pairs of rows, given as literals so that all of them stay in registers; those that touch a row from
+/// `$rows` on are left out, as if it held the largest keys.
 macro_rules! exchange {
     ($simd:ident, $keys:ident, $rows:expr, $($low:literal $high:literal),+) => {
         $(if $high < $rows {
@@ -153,8 +154,10 @@ fn merge<S: Simd, const ROWS: usize>(simd: S, low: &mut [S::u32s], high: &mut [S
         for row in 0..ROWS {
             keys[BLOCK + row] = high[row * columns + column];
         }
-        exchange!(simd, keys, BLOCK + ROWS, 0 8, 1 9, 2 10, 3 11, 4 12, 5 13, 6 14, 7 15, 4 8, 5 9, 6 10, 7 11);
-        exchange!(simd, keys, BLOCK + ROWS, 2 4, 3 5, 6 8, 7 9, 10 12, 11 13, 1 2, 3 4, 5 6, 7 8, 9 10, 11 12, 13 14);
+        exchange!(simd, keys, BLOCK + ROWS, 0 8, 1 9, 2 10, 3 11, 4 12, 5 13, 6 14, 7 15);
+        exchange!(simd, keys, BLOCK + ROWS, 4 8, 5 9, 6 10, 7 11);
+        exchange!(simd, keys, BLOCK + ROWS, 2 4, 3 5, 6 8, 7 9, 10 12, 11 13);
+        exchange!(simd, keys, BLOCK + ROWS, 1 2, 3 4, 5 6, 7 8, 9 10, 11 12, 13 14);
         for row in 0..BLOCK {
             low[row * columns + column] = keys[row];
         }

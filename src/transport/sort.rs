@@ -7,7 +7,8 @@ pub(crate) const SHARED: usize = 1 << 17;
 
 /// From this many samples on, a radix sort beats the comparisons of the standard library.
 const RADIX: usize = 256;
-/// Up to this many samples it also beats a sort shared between threads, and its positions leave room for a digit.
+/// Up to this many samples it also beats a sort shared between threads, and its positions leave room for a
+/// digit.
 const LARGEST_RADIX: usize = 1 << (u32::BITS - DIGIT);
 /// Bits of a digit of the radix sort, which takes two.
 const DIGIT: u32 = 11;
@@ -23,8 +24,8 @@ pub(super) struct SortBuffers {
 }
 
 impl SortBuffers {
-    /// Writes the positions of the projections by increasing value. These lie between `lowest` and `lowest + extent`, up to
-    /// rounding.
+    /// Writes the positions of the projections by increasing value. These lie between `lowest` and `lowest +
+    /// extent`, up to rounding.
     pub(super) fn sort(&mut self, projections: &[f32], (lowest, extent): (f64, f64), order: &mut [u32]) {
         let n = projections.len();
         match n {
@@ -58,7 +59,8 @@ fn sort_shared(projections: &[f32], keys: &mut Vec<u64>, order: &mut [u32]) {
     order.par_iter_mut().zip(keys).with_min_len(1 << 12).for_each(|(order, key)| *order = *key as u32);
 }
 
-/// Sorts by two digits of the projection's place in the support: to a 4-millionth of it, and by position below.
+/// Sorts by two digits of the projection's place in the support: to a 4-millionth of it, and by position
+/// below.
 fn sort_digits(
     projections: &[f32],
     (lowest, extent): (f64, f64),

@@ -1,7 +1,8 @@
 //! The squared 2-Wasserstein distance of a slice, from the distribution function of a sum of uniforms.
 //!
-//! Nothing is shared with the crate: the distribution function is the textbook's alternating sum (good to 1e-12 for
-//! up to five components that are not small), quantiles are found by bisection, and each cell is integrated by parts.
+//! Nothing is shared with the crate: the distribution function is the textbook's alternating sum (good to
+//! 1e-12 for up to five components that are not small), quantiles are found by bisection, and each cell is
+//! integrated by parts.
 
 /// Law of `theta·U` for uniform `U` in the cube; all components differ from 0.
 pub struct Law<'a> {

@@ -108,8 +108,8 @@ fn build(raw: &Raw) -> Case {
 }
 
 impl Case {
-    /// How far a coordinate may move, at least, before two samples swap ranks along a slice, pass its cut or leave
-    /// the interval: the value is a quadratic polynomial up to there.
+    /// How far a coordinate may move, at least, before two samples swap ranks along a slice, pass its cut or
+    /// leave the interval: the value is a quadratic polynomial up to there.
     fn smooth(&self) -> f64 {
         let dims = self.domains.len();
         let mut gap: f64 = 1e-3;
@@ -155,8 +155,8 @@ impl Case {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 128, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// The value is piecewise quadratic, so a central difference inside a piece is exact up to rounding: 1e-15 of the
-    /// value over steps of at least 2.5e-8, against gradients of about the value.
+    /// The value is piecewise quadratic, so a central difference inside a piece is exact up to rounding:
+    /// 1e-15 of the value over steps of at least 2.5e-8, against gradients of about the value.
     #[test]
     fn the_gradient_is_that_of_the_value(raw in raw()) {
         let case = build(&raw);

@@ -1,5 +1,5 @@
-//! `Objective::value_and_gradient` on explicit lists of slices: against brute force, against central differences,
-//! at ties, and what it refuses.
+//! `Objective::value_and_gradient` on explicit lists of slices: against brute force, against central
+//! differences, at ties, and what it refuses.
 
 mod brute_force;
 mod differences;

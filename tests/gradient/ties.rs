@@ -72,8 +72,8 @@ fn duplicates_that_move_together_have_a_derivative() {
     }
 }
 
-/// One of two tied samples moves away: the slope differs on the two sides, the gradient lies between them (here: is
-/// one of them), and the value has no jump.
+/// One of two tied samples moves away: the slope differs on the two sides, the gradient lies between them
+/// (here: is one of them), and the value has no jump.
 #[test]
 fn a_tie_is_a_corner_and_not_a_jump() {
     let objective = planned();
@@ -87,7 +87,8 @@ fn a_tie_is_a_corner_and_not_a_jump() {
     // A central difference on either side, clear of the corner and of all other samples.
     let slope = |from: f64, to: f64| (at(to).0 - at(from).0) / (to - from);
     let (left, right) = (slope(-2e-6, -1e-6), slope(1e-6, 2e-6));
-    // The two samples swap neighbouring cells of ninths of the mass: |left - right| = 2/9 · 0.6 · (cell distance).
+    // The two samples swap neighbouring cells of ninths of the mass: |left - right| = 2/9 · 0.6 · (cell
+    // distance).
     assert!(left - right > 1e-3, "{left} {right}");
     let near = |slope: f64| (gradient[6] - slope).abs() < 1e-5; // curvature times the distance of 1e-6
     assert!(near(left) || near(right), "{} {left} {right}", gradient[6]);

@@ -8,12 +8,14 @@ use fsot::objective::Slice;
 use crate::brute_force::Law;
 use crate::{lattice, objective, spread, term, unit};
 
-/// A tile so much larger than the kernel that its images weigh less than 1e-12, so that the filter weight is its formula at the toroidal distance.
+/// A tile so much larger than the kernel that its images weigh less than 1e-12, so that the filter weight is
+/// its formula at the toroidal distance.
 const EXTENT: Extent = Extent { frames: 1, height: 17, width: 16, spp: 2 };
 const SIGMA: f64 = 2.1;
 const DIRECTION: [f64; 5] = [0.8, -0.5, 0.3, -0.9, 0.6];
 
-/// Weight of a sample under the filter of pixel `member`, from the definition; 0 below the documented truncation.
+/// Weight of a sample under the filter of pixel `member`, from the definition; 0 below the documented
+/// truncation.
 fn weight(member: usize, sample: usize) -> f64 {
     let [centre, site] = [member, sample / EXTENT.spp].map(|index| EXTENT.site(index));
     let apart = |a: usize, b: usize, len: usize| a.abs_diff(b).min(len - a.abs_diff(b)) as f64;
@@ -68,7 +70,8 @@ fn the_value_is_that_of_the_definition() {
             let (value, _) = objective.value_and_gradient(&points, &slices).unwrap();
             let expected = slices.iter().map(|slice| by_definition(&points, dims, torus, form, slice));
             let expected = expected.sum::<f64>() / slices.len() as f64;
-            // The midpoint rule is good to (cell / 2000)² relative, the crate's law to 5e-9 from five dimensions on.
+            // The midpoint rule is good to (cell / 2000)² relative, the crate's law to 5e-9 from five
+            // dimensions on.
             assert!(
                 (value - expected).abs() < 1e-6 * expected,
                 "{dims} {torus} {form:?}: {value} {expected}"
@@ -90,8 +93,8 @@ fn one_sample_on_the_line() {
     }
 }
 
-/// Two samples of a pixel against the cells `[0, 1/2]` and `[1/2, 1]`, whose means are 1/4 and 3/4; among four
-/// samples, so the mass of the slice is 1/2.
+/// Two samples of a pixel against the cells `[0, 1/2]` and `[1/2, 1]`, whose means are 1/4 and 3/4; among
+/// four samples, so the mass of the slice is 1/2.
 #[test]
 fn two_samples_on_the_line() {
     let extent = Extent { frames: 1, height: 1, width: 2, spp: 2 };

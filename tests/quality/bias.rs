@@ -20,8 +20,9 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// Random tables spread by 1 with standard deviation √(2/63) = 0.18. A corner cell of a random table, 64 samples,
-/// deviates by 1/8; the mean over 8 tables and 4 corners by 0.022, if optimised tables were as rough.
+/// Random tables spread by 1 with standard deviation √(2/63) = 0.18. A corner cell of a random table, 64
+/// samples, deviates by 1/8; the mean over 8 tables and 4 corners by 0.022, if optimised tables were as
+/// rough.
 #[test]
 fn default_tables_are_unbiased() {
     let histograms: Vec<Histogram> =

@@ -50,8 +50,9 @@ fn odd_shapes() {
     reaches([1, 24, 24, 1], 8, Descent::barycentric(), 200, 0.72);
 }
 
-/// White noise has ratio 1: the mean over 10 independent tables, each on slices of its own, within 4 standard errors
-/// of that mean (one false alarm in a few hundred by Student's t with 9 degrees of freedom, and the seeds are fixed).
+/// White noise has ratio 1: the mean over 10 independent tables, each on slices of its own, within 4 standard
+/// errors of that mean (one false alarm in a few hundred by Student's t with 9 degrees of freedom, and the
+/// seeds are fixed).
 #[test]
 fn white_noise_is_one() {
     for (shape, dims) in [([1, 24, 24, 1], 2), ([4, 8, 8, 2], 3), ([1, 10, 7, 1], 1), ([2, 3, 3, 4], 4)] {
@@ -71,8 +72,8 @@ fn white_noise_is_one() {
     }
 }
 
-/// The lattice term alone, measured with 16 times the slices: the error falls to a quarter. Each is estimated from at
-/// least 64 directions, so to about 9 %.
+/// The lattice term alone, measured with 16 times the slices: the error falls to a quarter. Each is estimated
+/// from at least 64 directions, so to about 9 %.
 #[test]
 fn the_standard_error_falls_with_the_root() {
     let config = Config::new(extent([1, 32, 32, 1]), 2);
@@ -112,8 +113,8 @@ fn the_bound_is_exact_on_the_line() {
     assert!(objective.value_and_gradient(&[0.6, 0.1], &[slice]).is_ok());
 }
 
-/// The weighted form is a bound at least as tight: on the same table its value lies below that of the level sets,
-/// beyond 4 standard errors.
+/// The weighted form is a bound at least as tight: on the same table its value lies below that of the level
+/// sets, beyond 4 standard errors.
 #[test]
 fn the_weighted_form_is_tighter() {
     let config = Config::new(extent([1, 32, 32, 1]), 2);

@@ -1,5 +1,5 @@
-//! What a run is worth: the bound falls, the table stays unbiased, runs end as they should, and what cannot be
-//! optimised is refused in words. Everything random has fixed seeds.
+//! What a run is worth: the bound falls, the table stays unbiased, runs end as they should, and what cannot
+//! be optimised is refused in words. Everything random has fixed seeds.
 
 mod bias;
 mod bound;

@@ -1,4 +1,5 @@
-//! Every configuration that cannot be optimised, and the words in which it is refused: what is wrong, what to do.
+//! Every configuration that cannot be optimised, and the words in which it is refused: what is wrong, what to
+//! do.
 
 use fsot::classes::{Classes, FilterForm};
 use fsot::config::{Descent, Domain, Role, Schedule, Term};

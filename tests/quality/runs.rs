@@ -45,8 +45,8 @@ fn step_reports_count_up() {
     }
     assert!(seen.is_sorted_by(|a, b| a.3 < b.3 && a.4 > b.4 && a.5 <= b.5));
     assert_eq!(seen.last().unwrap().3, report.slices);
-    // The table gets better: over a run from white noise the displacement falls, most of which is that of subsets of
-    // one and two samples and stays.
+    // The table gets better: over a run from white noise the displacement falls, most of which is that of
+    // subsets of one and two samples and stays.
     let mean =
         |steps: &[(u64, u64, f64, u64, f64, Duration)]| steps.iter().map(|step| step.2).sum::<f64>() / 4.0;
     let (first, last) = (mean(&seen[..4]), mean(&seen[seen.len() - 4..]));
@@ -110,7 +110,8 @@ fn tables_to_start_from() {
         let other = SampleTable::white_noise(extent(shape), dims, 0).unwrap();
         let error = Optimizer::from_table(config.clone(), other).err().unwrap();
         let words = format!(
-            "the table has shape {:?} instead of [1, 16, 16, 1, 2]: bring one of that [frame, y, x, sample, dim]",
+            "the table has shape {:?} instead of [1, 16, 16, 1, 2]: \
+                 bring one of that [frame, y, x, sample, dim]",
             [&shape[..], &[dims]].concat()
         );
         assert_eq!(error.to_string(), words);
@@ -120,7 +121,8 @@ fn tables_to_start_from() {
     assert!(matches!(error, ConfigError::DomainCount { .. }), "{error}");
 }
 
-/// Whatever the shape, values stay in `[0, 1)` and the bound falls; the kernel folds where it is wider than the tile.
+/// Whatever the shape, values stay in `[0, 1)` and the bound falls; the kernel folds where it is wider than
+/// the tile.
 #[test]
 fn unusual_shapes_run() {
     for (shape, dims) in [

@@ -7,8 +7,8 @@ use fsot::{Config, ConfigError, Optimizer, Until};
 
 use crate::{extent, on, ratio};
 
-/// Filtered error, bound and bias of a run, in the first dimensions of the table; over 3 seeds, each below its limit.
-/// Limits lie some percent above what was measured when this was written.
+/// Filtered error, bound and bias of a run, in the first dimensions of the table; over 3 seeds, each below
+/// its limit. Limits lie some percent above what was measured when this was written.
 fn reaches(shape: [usize; 4], dims: usize, work: Work, [most_filtered, most_bound, most_bias]: [f64; 3]) {
     for seed in 0..3 {
         let config = Config::new(extent(shape), dims).with_seed(seed);

@@ -83,7 +83,8 @@ fn the_ends_of_a_ramp_are_uniform() {
     }
 }
 
-/// Terms whose classes hold nothing of what is demanded are left out, and do not stand in the way of the others.
+/// Terms whose classes hold nothing of what is demanded are left out, and do not stand in the way of the
+/// others.
 #[test]
 fn terms_that_nobody_demands_are_left_out() {
     let term = |classes| Term {

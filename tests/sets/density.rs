@@ -46,7 +46,8 @@ fn laws_of_small_pictures_are_exact() {
                 moment += share * at;
                 worst_integral = worst_integral.max((law.quantile_integral(below) - moment).abs());
             }
-            // The masses are 1/64 of a pixel wide, or 1/8 of a small one; along an axis a column of them coincides.
+            // The masses are 1/64 of a pixel wide, or 1/8 of a small one; along an axis a column of them
+            // coincides.
             assert!(worst < 0.02, "{:?} {direction:?}: {worst}", density.size());
             assert!(worst_integral < 2e-4, "{:?} {direction:?}: {worst_integral}", density.size());
             // A component of 0 is replaced by a millionth of the other.
@@ -146,7 +147,8 @@ fn spacing_is_even_in_the_picture() {
         nearest[1] += offset[1];
     }
     let ratio = nearest[0] / nearest[1];
-    // Ten rows are few: the edges make nearest neighbours lie along them. In units of the square it would be 4.
+    // Ten rows are few: the edges make nearest neighbours lie along them. In units of the square it would be
+    // 4.
     assert!((0.6..2.0).contains(&ratio), "{ratio}");
 }
 
@@ -186,7 +188,8 @@ fn laws_of_the_caller_agree_with_each_other() {
     }
 }
 
-/// The engine against the textbook path on the same slices: a step of size 1 moves each coordinate by the gradient's mean.
+/// The engine against the textbook path on the same slices: a step of size 1 moves each coordinate by the
+/// gradient's mean.
 #[test]
 fn the_engine_follows_the_gradient_of_a_density() {
     let density = Density::new(3, 2, vec![0.0, 1.0, 2.0, 1.0, 0.0, 4.0]).unwrap();

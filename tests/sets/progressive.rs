@@ -37,7 +37,8 @@ fn given_and_all_lengths_can_be_had() {
     }
 }
 
-/// For adaptive renderers: 1, 2, 4 and 8 of a pixel's 8 samples are stratified, beside the lattice's own classes.
+/// For adaptive renderers: 1, 2, 4 and 8 of a pixel's 8 samples are stratified, beside the lattice's own
+/// classes.
 #[test]
 fn prefixes_of_pixels_join_the_lattice() {
     let extent = Extent { frames: 1, height: 16, width: 16, spp: 8 };

@@ -6,8 +6,8 @@ use crate::{descents, square};
 
 const CHECKPOINTS: u64 = 10;
 
-/// Measured with the same slices at ten checkpoints, the bound never increases by more than its standard error: of a
-/// measurement, not of the difference, which is far smaller because the slices are the same.
+/// Measured with the same slices at ten checkpoints, the bound never increases by more than its standard
+/// error: of a measurement, not of the difference, which is far smaller because the slices are the same.
 #[test]
 fn the_bound_falls_along_a_run() {
     let animated = Extent { frames: 6, height: 12, width: 12, spp: 1 };
@@ -40,7 +40,8 @@ fn the_bound_falls_along_a_run() {
                 }
             }
             println!(
-                "{extent:?} × {dims}, {descent:?}\n  {trace}; greatest rise {greatest_rise:.2} standard errors"
+                "{extent:?} × {dims}, {descent:?}\n  {trace}; \
+                 greatest rise {greatest_rise:.2} standard errors"
             );
             assert!(greatest_rise <= 1.0, "{extent:?} {descent:?}: {trace}");
         }

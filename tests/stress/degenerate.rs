@@ -33,7 +33,8 @@ const STARTS: [(&str, Start); 7] = [
 fn every_start_ends_where_white_noise_does() {
     let extent = square(16, 1);
     println!(
-        "bound relative to white noise after 256 slices per pixel: least and greatest over domains and descents"
+        "bound relative to white noise after 256 slices per pixel: \
+         least and greatest over domains and descents"
     );
     let mut of_white = Vec::new();
     for (name, value) in STARTS {
@@ -86,8 +87,8 @@ fn drawn(config: &Config) -> (Objective, Vec<Slice>) {
     (objective, slices)
 }
 
-/// With all points in one place, W2² is the squared distance to the mean plus the variance, and the displacements of a
-/// subset add up to n times the distance to the mean.
+/// With all points in one place, W2² is the squared distance to the mean plus the variance, and the
+/// displacements of a subset add up to n times the distance to the mean.
 #[test]
 fn a_single_place_has_its_closed_form() {
     for dims in [1, 2, 3] {
@@ -110,7 +111,8 @@ fn a_single_place_has_its_closed_form() {
                     sums[dim] += 2.0 * scale * n * away * component;
                 }
             }
-            // Sums of a few thousand terms whose total is below 1; quantile cells of three dimensions are good to 2e-12.
+            // Sums of a few thousand terms whose total is below 1; quantile cells of three dimensions are
+            // good to 2e-12.
             assert!((value - expected).abs() < 1e-11, "{dims} {place}: {value} {expected}");
             for (dim, sum) in sums.iter().enumerate() {
                 let found: f64 = gradient.iter().skip(dim).step_by(dims).sum();
@@ -123,11 +125,14 @@ fn a_single_place_has_its_closed_form() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// A torus has no place of its own: shifting points and cuts together changes nothing, also when points cross the
-    /// seam.
+    /// A torus has no place of its own: shifting points and cuts together changes nothing, also when points
+    /// cross the seam.
     #[test]
     fn a_torus_may_be_shifted(
-        points in prop::collection::vec(prop_oneof![4 => 0.0..1.0_f64, 1 => Just(0.0), 1 => Just(1.0 - 1e-16)], 128),
+        points in prop::collection::vec(
+            prop_oneof![4 => 0.0..1.0_f64, 1 => Just(0.0), 1 => Just(1.0 - 1e-16)],
+            128,
+        ),
         shift in prop::array::uniform2(0.0..1.0_f64),
     ) {
         let mut config = Config::new(square(8, 1), 2);
@@ -141,8 +146,8 @@ proptest! {
             slice.cut.iter_mut().zip(shift).for_each(|(cut, shift)| *cut = wrap(*cut + shift));
         }
         let (after, moved_gradient) = objective.value_and_gradient(&moved, &slices).unwrap();
-        // A few roundings of 1e-16 per point. Points do not fall on the f32 cuts, but some come in pairs: exchanging two
-        // of equal projection moves their gradients, not the value, nor the sum of gradients.
+        // A few roundings of 1e-16 per point. Points do not fall on the f32 cuts, but some come in pairs:
+        // exchanging two of equal projection moves their gradients, not the value, nor the sum of gradients.
         prop_assert!((before - after).abs() < 1e-13, "{before} {after}");
         for dim in 0..2 {
             let sum = |gradient: &[f64]| gradient.iter().skip(dim).step_by(2).sum::<f64>();

@@ -35,8 +35,8 @@ fn component() -> impl Strategy<Value = f64> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 96, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// What tiny components contribute is tiny, their gradients are those of the large one scaled down, and nothing is
-    /// lost when all are tiny.
+    /// What tiny components contribute is tiny, their gradients are those of the large one scaled down, and
+    /// nothing is lost when all are tiny.
     #[test]
     fn components_may_be_tiny(
         size in 0..5_usize,
@@ -55,18 +55,21 @@ proptest! {
         for (dim, component) in direction.iter().enumerate() {
             for sample in gradient.chunks_exact(dims) {
                 // Both are the same displacement times a component: one rounding each.
-                prop_assert!((sample[dim] - sample[0] * component).abs() <= 1e-15 * (sample[0] * component).abs());
+                let expected = sample[0] * component;
+                prop_assert!((sample[dim] - expected).abs() <= 1e-15 * expected.abs());
             }
         }
 
-        let limit = direction.iter().map(|&component| if component.abs() < 1e-9 { 0.0 } else { component }).collect();
+        let kept = |&component: &f64| if component.abs() < 1e-9 { 0.0 } else { component };
+        let limit = direction.iter().map(kept).collect();
         let (limit, _) = objective.value_and_gradient(&points, &[slice(limit)]).unwrap();
-        // Fifteen components of 1e-9 move projections and quantiles by 1.5e-8, and the square of a distance below 2 by four
-        // times that; the law itself is good to 5e-8 of a sum of up to 16 when its components span many magnitudes.
+        // Fifteen components of 1e-9 move projections and quantiles by 1.5e-8, and the square of a distance
+        // below 2 by four times that; the law itself is good to 5e-8 of a sum of up to 16 when its components
+        // span many magnitudes.
         prop_assert!((value - limit).abs() < 5e-6, "{value} {limit}");
 
-        // Squared distances scale with the square of the direction, without underflow on the way; rounding of the scaled
-        // components shows as in the law above.
+        // Squared distances scale with the square of the direction, without underflow on the way; rounding of
+        // the scaled components shows as in the law above.
         let shrunk = direction.iter().map(|component| component * 1e-30).collect();
         let (shrunk, _) = objective.value_and_gradient(&points, &[slice(shrunk)]).unwrap();
         prop_assert!((shrunk * 1e60 - value).abs() < 5e-6, "{shrunk} {value}");

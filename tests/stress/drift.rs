@@ -44,7 +44,8 @@ fn a_hundred_thousand_steps_stay_inside() {
                 }
             }
             println!(
-                "10⁵ steps of size {rate}, {first:?} first: mean position ({:.3}, {:.3}); {:.1} s; {descent:?}",
+                "10⁵ steps of size {rate}, {first:?} first: \
+                 mean position ({:.3}, {:.3}); {:.1} s; {descent:?}",
                 mean[0],
                 mean[1],
                 begin.elapsed().as_secs_f64()

@@ -15,7 +15,8 @@ fn config(side: usize, spatial: SpatialKernel, form: FilterForm) -> Config {
     config
 }
 
-/// A pixel alone can only go to the middle, and does: so rare a balance does not hold against it, the table is biased.
+/// A pixel alone can only go to the middle, and does: so rare a balance does not hold against it, the table
+/// is biased.
 #[test]
 fn one_tap() {
     let tap = SpatialTap { dy: -3, dx: 40, weight: 1e-300 };
@@ -32,7 +33,8 @@ fn one_tap() {
                 "one tap, {form:?}: kernel's bound {:.3} of white noise, whole table's {:.3}",
                 bound.terms[0].ratio_to_white_noise, bound.terms[1].ratio_to_white_noise
             );
-            // A point in the middle is nearer to all of the square than a random one: at the least 0.75 in the mean.
+            // A point in the middle is nearer to all of the square than a random one: at the least 0.75 in
+            // the mean.
             assert!((0.7..1.0).contains(&bound.terms[0].ratio_to_white_noise), "{bound:?}");
         }
     }
@@ -65,7 +67,8 @@ fn four_thousand_taps() {
             let after = bound(&optimizer);
             assert_inside(optimizer.table().values(), name);
             println!(
-                "{name} (least weight {least:.1e}), {form:?}: bound {:.3} of white noise after 12 steps, from {:.3}",
+                "{name} (least weight {least:.1e}), {form:?}: \
+                 bound {:.3} of white noise after 12 steps, from {:.3}",
                 after.ratio_to_white_noise, before.ratio_to_white_noise
             );
             let error = before.standard_error.hypot(after.standard_error);
@@ -74,8 +77,8 @@ fn four_thousand_taps() {
     }
 }
 
-/// A wide Gaussian is flat: by Poisson's summation formula its folded weights differ by exp(−(π sigma / side)²) < 1e-300
-/// of themselves, less than the cut of its far tail (1e-12 per image).
+/// A wide Gaussian is flat: by Poisson's summation formula its folded weights differ by exp(−(π sigma /
+/// side)²) < 1e-300 of themselves, less than the cut of its far tail (1e-12 per image).
 #[test]
 fn sigma_1000_is_flat() {
     let kernel = Kernel::product(SpatialKernel::Gaussian { sigma_px: 1000.0 }, TemporalKernel::None);

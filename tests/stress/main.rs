@@ -1,7 +1,8 @@
 //! Numerical stress: inputs that break floating-point code, and what the crate promises about them.
 //!
-//! `cargo test --release --test stress -- --nocapture` prints the figures of `docs/numerical-stress.md`. The `f32` engine
-//! against its `f64` twin is a unit test of the engine, distances against brute force one of the transport.
+//! `cargo test --release --test stress -- --nocapture` prints the figures of `docs/numerical-stress.md`. The
+//! `f32` engine against its `f64` twin is a unit test of the engine, distances against brute force one of the
+//! transport.
 
 mod decay;
 mod degenerate;

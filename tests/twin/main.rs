@@ -60,8 +60,8 @@ impl Case {
         config
     }
 
-    /// Compares both roles of a step from white noise and of one from a partly optimised table. Returns the sizes of
-    /// all subsets that were compared.
+    /// Compares both roles of a step from white noise and of one from a partly optimised table. Returns the
+    /// sizes of all subsets that were compared.
     fn check(&self) -> Vec<usize> {
         let config = self.config();
         let mut sizes = Vec::new();
@@ -78,8 +78,8 @@ impl Case {
 
     /// Compares one step, the first of an optimiser that starts from this table.
     fn check_step(&self, config: &Config, before: &SampleTable) -> Vec<usize> {
-        // Only descended, then descended and balanced: the second role sees the table as it was before, and moves on from
-        // where the first ended.
+        // Only descended, then descended and balanced: the second role sees the table as it was before, and
+        // moves on from where the first ended.
         let step = |balance: f64| {
             let mut optimizer = Optimizer::from_table(config.clone(), before.clone()).unwrap();
             let SliceStep { displacement, slices, .. } = optimizer.step(0.8, balance);
@@ -129,17 +129,17 @@ impl Case {
         sizes
     }
 
-    /// Projections closer than this may change places: keys of subsets up to 1024 keep 22 bits of a support of length
-    /// up to √D, and the projections themselves are sums of D roundings of 2⁻²⁴.
+    /// Projections closer than this may change places: keys of subsets up to 1024 keep 22 bits of a support
+    /// of length up to √D, and the projections themselves are sums of D roundings of 2⁻²⁴.
     fn tie(&self) -> f64 {
         let d = self.dims as f64;
         d.sqrt() * 2.0_f64.powi(-21) + d * 2.0_f64.powi(-24)
     }
 
-    /// Rounding of a coordinate. Per displacement: D products and sums of `f32` and a target, each within 2⁻²⁴ of
-    /// numbers up to √D; the mean is taken D-fold; 16 numbers and then some hundred subsets are summed one after the
-    /// other, each sum within 2⁻²⁴ of up to a hundred times the mean. From three dimensions on, tabulated targets
-    /// are off by up to 2e-6, D-fold again.
+    /// Rounding of a coordinate. Per displacement: D products and sums of `f32` and a target, each within
+    /// 2⁻²⁴ of numbers up to √D; the mean is taken D-fold; 16 numbers and then some hundred subsets are
+    /// summed one after the other, each sum within 2⁻²⁴ of up to a hundred times the mean. From three
+    /// dimensions on, tabulated targets are off by up to 2e-6, D-fold again.
     fn tolerance(&self) -> f64 {
         let d = self.dims as f64;
         let tabulated = if self.groups.iter().any(|group| group.dims.len() > 2) { 2e-6 * d } else { 0.0 };
@@ -170,7 +170,8 @@ fn several_samples_per_pixel() {
     assert!(sizes.iter().any(|&size| (257..=388).contains(&size)), "{sizes:?}");
 }
 
-/// Subsets above 1024 samples leave the lanes; all of these sizes share one family and its sixteen directions.
+/// Subsets above 1024 samples leave the lanes; all of these sizes share one family and its sixteen
+/// directions.
 #[test]
 fn sixteen_samples_per_pixel() {
     for (dims, axis_share) in [(2, 0.3), (3, 0.3)] {

@@ -9,8 +9,8 @@ use fsot::objective::Slice;
 use fsot::targets::Target;
 use fsot::{Config, Extent, Site};
 
-/// The first five taps of the perceptual kernel at 60 frames per second; the sixth is negative. From the published
-/// table of Korać et al. 2023.
+/// The first five taps of the perceptual kernel at 60 frames per second; the sixth is negative. From the
+/// published table of Korać et al. 2023.
 const PERCEPTUAL: [f64; 5] =
     [0.0395582850655909, 0.398409765599820, 0.404689211439515, 0.177879764807883, 0.0419136195197315];
 
@@ -107,8 +107,8 @@ fn weights(extent: &Extent, term: &Term, member: usize) -> impl Fn(Site) -> f64 
     move |site| t[site.frame] * y[site.y] * x[site.x]
 }
 
-/// Weight of a row or column `apart` pixels away, relative to that of the centre; each of its images on a tile that
-/// wraps counts.
+/// Weight of a row or column `apart` pixels away, relative to that of the centre; each of its images on a
+/// tile that wraps counts.
 fn in_space(sigma: f64, apart: usize, len: usize) -> f64 {
     // Images more than 8 sigma away weigh less than 1e-27.
     let turns = (8.0 * sigma / len as f64) as i32 + 1;

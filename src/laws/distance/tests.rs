@@ -1,12 +1,12 @@
-//! One-dimensional distances against brute force: all assignments, and quadrature of distribution functions that are
-//! written down here from the textbook.
+//! One-dimensional distances against brute force: all assignments, and quadrature of distribution functions
+//! that are written down here from the textbook.
 
 use proptest::prelude::*;
 
 use super::*;
 
-/// Distribution function of a sum of at most three independent uniforms on `[0, wᵢ]`: the alternating sum, harmless
-/// for few widths of similar size.
+/// Distribution function of a sum of at most three independent uniforms on `[0, wᵢ]`: the alternating sum,
+/// harmless for few widths of similar size.
 fn textbook_cdf(x: f64, widths: &[f64]) -> f64 {
     let degree = widths.len() as i32;
     let mut sum = 0.0;
@@ -20,8 +20,8 @@ fn textbook_cdf(x: f64, widths: &[f64]) -> f64 {
     (sum / (factorial * widths.iter().product::<f64>())).clamp(0.0, 1.0)
 }
 
-/// `∫ |F_n − F| dx` for weighted points, with nodes at the points and at the kinks of `F`, one more where the difference
-/// changes sign, and Gauss–Legendre with three points between: exact for polynomials of degree 5.
+/// `∫ |F_n − F| dx` for weighted points, with nodes at the points and at the kinks of `F`, one more where the
+/// difference changes sign, and Gauss–Legendre with three points between: exact for polynomials of degree 5.
 fn area_between(direction: &[f64], points: &[(f64, f64)]) -> f64 {
     let widths: Vec<f64> = direction.iter().map(|component| component.abs()).collect();
     let low: f64 = direction.iter().map(|component| component.min(0.0)).sum();
@@ -87,8 +87,9 @@ fn along(direction: &[f64], shares: &[f64]) -> Vec<f64> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Each of n points takes one of n equal cells of the target whole: the sorted assignment is the cheapest of all n!,
-    /// for both costs, and its cost is what is returned. (Splitting cells cannot do better: Birkhoff.)
+    /// Each of n points takes one of n equal cells of the target whole: the sorted assignment is the cheapest
+    /// of all n!, for both costs, and its cost is what is returned. (Splitting cells cannot do better:
+    /// Birkhoff.)
     #[test]
     fn no_assignment_is_cheaper(direction in direction(), shares in shares(7)) {
         let law = Projected::of_cube(&direction);
@@ -126,13 +127,16 @@ proptest! {
     ) {
         let law = Projected::of_cube(&direction);
         let mut projections = along(&direction, &shares);
-        // Points beyond the support are dearer by their distance; the area is taken between the outermost nodes.
+        // Points beyond the support are dearer by their distance; the area is taken between the outermost
+        // nodes.
         let weights = weighted.then(|| &weights[..projections.len()]);
         let masses = |i: usize| weights.map_or(1.0, |weights| weights[i]);
-        let points: Vec<(f64, f64)> = projections.iter().enumerate().map(|(i, &at)| (at, masses(i))).collect();
+        let places = projections.iter().enumerate();
+        let points: Vec<(f64, f64)> = places.map(|(i, &at)| (at, masses(i))).collect();
         let area = area_between(&direction, &points);
         let w1 = Workspace::default().w1(&law, &projections, weights);
-        // The twin's alternating sum of three cubes loses up to 1 / (6 · 0.05²) = 70 roundings of 1e-16 to 3e-15.
+        // The twin's alternating sum of three cubes loses up to 1 / (6 · 0.05²) = 70 roundings of 1e-16 to
+        // 3e-15.
         prop_assert!((w1 - area).abs() < 1e-12, "{w1} {area}");
         // The order of the points does not matter without weights.
         if weights.is_none() {

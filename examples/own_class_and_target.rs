@@ -1,6 +1,6 @@
 //! A family of classes and a target of one's own: every window of consecutive points is uniform on a disc.
 //!
-//! `cargo run --release --example custom_class`
+//! `cargo run --release --example own_class_and_target`
 
 use fsot::classes::{ClassFamily, ClassSamples, Classes};
 use fsot::config::{Role, Term};

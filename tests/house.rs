@@ -1,4 +1,5 @@
-//! Data flows one way: a file of the library imports only from rooms below its own.
+//! The shape of the code: data flows one way, files are short enough to read in one sitting, lines fit the
+//! page.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -75,6 +76,45 @@ fn no_file_imports_upwards() {
         }
     }
     assert!(upward.is_empty(), "{}", upward.join("\n"));
+}
+
+/// All sources of the workspace.
+fn all_sources() -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folders = ["src", "tests", "benches", "examples", "cli", "lab"].map(|folder| root.join(folder));
+    folders.iter().filter(|folder| folder.is_dir()).flat_map(|folder| sources(folder)).collect()
+}
+
+#[test]
+fn files_are_short_and_lines_fit() {
+    let mut lengths = Vec::new();
+    let mut complaints = Vec::new();
+    for path in all_sources() {
+        let text = fs::read_to_string(&path).unwrap();
+        lengths.push(text.lines().count());
+        if text.lines().count() > 400 {
+            complaints.push(format!("{} has {} lines", path.display(), text.lines().count()));
+        }
+        // `max_width` of rustfmt.toml, which leaves comments and strings alone.
+        for (number, line) in text.lines().enumerate().filter(|(_, line)| line.chars().count() > 110) {
+            complaints.push(format!("{}:{} is {} wide", path.display(), number + 1, line.chars().count()));
+        }
+    }
+    lengths.sort_unstable();
+    let median = lengths[lengths.len() / 2];
+    println!("{} files, median {median} lines, longest {}", lengths.len(), lengths[lengths.len() - 1]);
+    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+    assert!(median <= 200, "{median}");
+}
+
+#[test]
+fn the_root_has_few_names() {
+    let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("src/lib.rs")).unwrap();
+    let modules = text.lines().filter(|line| line.starts_with("pub mod ")).count();
+    let exported = text.lines().filter_map(|line| line.strip_prefix("pub use "));
+    let types: usize = exported.map(|line| line.split(',').count()).sum();
+    println!("{types} types and {modules} modules at the root");
+    assert!(types + modules <= 20, "{types} types, {modules} modules");
 }
 
 #[test]
