@@ -16,6 +16,7 @@ pub struct Quality {
 
 /// Measures tables of one shape: always the same filter, integrands and slices, so that differences have
 /// little noise.
+#[derive(Debug)]
 pub struct Judge {
     kernel: Kernel,
     objective: Objective,

@@ -71,6 +71,7 @@ const LEAST_EXPONENT: f32 = -80.0;
 const CHUNK: usize = 64;
 
 /// A table of two dimensions on its way.
+#[derive(Debug)]
 pub struct Published {
     parameters: Parameters,
     points: Vec<f32>,
@@ -80,6 +81,7 @@ pub struct Published {
 }
 
 /// Buffers of one slice.
+#[derive(Debug)]
 struct Workspace {
     kept: Vec<usize>,
     projections: Vec<(f32, usize)>,

@@ -56,8 +56,8 @@ impl ImageFilter {
         Ok(self)
     }
 
-    /// The filtered film. Only frames with their whole past are kept: `k` temporal taps drop the first `k -
-    /// 1`.
+    /// The filtered film. Only frames with their whole past are kept: `k` temporal taps drop the first
+    /// `k - 1`.
     ///
     /// # Errors
     /// Fewer frames than temporal taps.

@@ -22,8 +22,8 @@ pub struct Reference {
     pub mean: Film,
     /// Standard error of `mean`, from the spread of eight independent randomisations.
     pub standard_error: Film,
-    /// Variance of *one* sample: white noise at `n` samples a pixel has the expected squared error `variance
-    /// / n`.
+    /// Variance of *one* sample: white noise at `n` samples a pixel has the expected squared error
+    /// `variance / n`.
     pub variance: Film,
 }
 

@@ -23,8 +23,8 @@ pub enum Integrator {
     /// Direct light as in [`Integrator::Light`], and light reflected once on the way:
     /// `[light u, light v, bsdf u, bsdf v, light u', light v']`. Rays that escape see the environment.
     OneBounce,
-    /// Share of the cosine-weighted hemisphere that is free up to a distance, whatever the material: `[u,
-    /// v]`.
+    /// Share of the cosine-weighted hemisphere that is free up to a distance, whatever the material:
+    /// `[u, v]`.
     AmbientOcclusion {
         /// Reach of the rays in scene units.
         distance: f64,

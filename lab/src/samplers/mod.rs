@@ -15,7 +15,7 @@
 //! | recipe | arranges | after |
 //! |---|---|---|
 //! | [`stratified`] | nothing: jittered pixels | Cook 1986 |
-//! | [`Shifted`] [`Pattern`] | nothing: a lattice, toroidally shifted per pixel | Cranley and Patterson 1976 |
+//! | [`Shifted`] [`Pattern`] | nothing: a lattice, shifted per pixel | Cranley and Patterson 1976 |
 //! | [`DitherMask`] | unlike values at near pixels | Georgiev and Fajardo 2016 |
 //! | [`ScramblingKeys`] | unlike errors at near pixels | Heitz et al. 2019 |
 //! | [`SeedPermutation`], [`histogram_sampling`] | rendered values by a mask | Heitz and Belcour 2019 |

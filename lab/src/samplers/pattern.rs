@@ -74,9 +74,9 @@ impl Pattern {
         Self::rank1(points, &generator)
     }
 
-    /// The first points of a Kronecker sequence, `frac(i · (1/φ, 1/φ², …))` with the root `φ` of `φ^(dims +
-    /// 1) = φ + 1`: the golden ratio for one dimension, R2 for two[^roberts]. Any number of first points is a
-    /// good set. The first is the origin.
+    /// The first points of a Kronecker sequence, `frac(i · (1/φ, 1/φ², …))` with the root `φ` of
+    /// `φ^(dims + 1) = φ + 1`: the golden ratio for one dimension, R2 for two[^roberts]. Any number of first
+    /// points is a good set. The first is the origin.
     ///
     /// [^roberts]: Roberts 2018, "The unreasonable effectiveness of quasirandom sequences",
     ///     extremelearning.com.au.

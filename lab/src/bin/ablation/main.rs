@@ -1,13 +1,13 @@
 //! What each choice of the optimiser is worth: the defaults, and one thing changed at a time.
 //!
 //! ```text
-//! cargo run --release -p fsot-lab --bin ablation -- --out docs --machine "AMD EPYC, 2 cores, 2026-11-22"    # some minutes
-//! cargo run --release -p fsot-lab --bin ablation -- schedule                                                # prints some of it
+//! cargo run --release -p fsot-lab --bin ablation -- --out docs --machine "AMD EPYC, 2 cores, 2026-11-22"
+//! cargo run --release -p fsot-lab --bin ablation -- schedule    # prints some of it
 //! ```
 //!
 //! Choices that don't change the cost of a slice are compared at equal slices, the others at equal time: that
 //! of the defaults, as told by short runs of both right before each. Tables are measured as in the README;
-//! all figures are ratios to white noise of the same shape.
+//! all figures are ratios to white noise of the same shape. Some minutes.
 //!
 //! With `--quick` everything runs once on small tables.
 

@@ -1,7 +1,7 @@
 //! Renders a scene with sample tables, white noise and Owen-scrambled Sobol', and says which is better.
 //!
 //! ```text
-//! cargo run --release -p fsot-lab --bin compare -- --table a.npy b.npy --scene soft_shadow --spp 1 --out sheet
+//! cargo run --release -p fsot-lab --bin compare -- --table a.npy b.npy --scene glossy --out sheet
 //! ```
 //!
 //! Prints the errors as ratios to white noise and writes `SCENE-SPPspp.png`, a contact sheet with a column

@@ -1,9 +1,9 @@
 //! Simulated annealing over swaps: which value stands at which site.
 //!
 //! The compared samplers that are tables (Georgiev and Fajardo 2016, Wolfe et al. 2022, Donnelly et al. 2024,
-//! Heitz et al. 2019) all fix a set of values and look for the arrangement with the least energy `Σ w(p − q)
-//! E(v_p, v_q)`. Here is what they share: the acceptance rule, the cooling, and regions that are annealed
-//! side by side.
+//! Heitz et al. 2019) all fix a set of values and look for the arrangement with the least energy
+//! `Σ w(p − q) E(v_p, v_q)`. Here is what they share: the acceptance rule, the cooling, and regions that are
+//! annealed side by side.
 //!
 //! A round places disjoint regions at a random offset, farther apart than the energy reaches. Each is copied
 //! with its surroundings into a [`Patch`], annealed there, and copied back: no region sees another at work,
