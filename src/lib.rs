@@ -99,7 +99,8 @@ mod named;
 pub mod objective;
 pub mod optimizer;
 pub mod random;
-mod simd;
+#[doc(hidden)]
+pub mod simd;
 mod slices;
 mod sweeps;
 mod table;

@@ -14,7 +14,9 @@ pub struct Quality {
     pub bias: f64,
 }
 
-/// Measures tables of one shape: always the same filter, integrands and slices, so that differences have little noise.
+/// Measures tables of one shape: always the same filter, integrands and slices, so that differences have
+/// little noise.
+#[derive(Debug)]
 pub struct Judge {
     kernel: Kernel,
     objective: Objective,

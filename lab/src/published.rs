@@ -1,18 +1,19 @@
 //! The published way to optimise a table, written plainly, to compare with.
 //!
-//! This is the loop of Salaün et al. 2022[^salaun] and Korać et al. 2023[^korac], written from a description of its
-//! mathematics, without sight of their programs. Every slice looks at every sample, and that is what it costs:
+//! This is the loop of Salaün et al. 2022[^salaun] and Korać et al. 2023[^korac], written from a description
+//! of its mathematics, without sight of their programs. Every slice looks at every sample, and that is what
+//! it costs:
 //!
 //! 1. draw a pixel, a level and a direction (70 % of them anywhere, 15 % along each axis);
 //! 2. evaluate the filter, with its exponential, at every sample of the table and keep those above the level;
 //! 3. draw three target points per kept sample from the square, project and sort both;
-//! 4. the sample of rank `i` moves towards the mean of the target points `3i`, `3i + 1`, `3i + 2`: the exact transport
-//!    between the two sets of points, and the least noisy use of three points per sample;
+//! 4. the sample of rank `i` moves towards the mean of the target points `3i`, `3i + 1`, `3i + 2`: the exact
+//!    transport between the two sets of points, and the least noisy use of three points per sample;
 //! 5. write the displacements into a table that is cleared and added up in full.
 //!
-//! A batch of slices makes a step of Adam with constant parameters. Its `epsilon` exceeds the gradient by orders of
-//! magnitude, so that it is gradient descent with momentum in effect. Samples that leave the square are put back on
-//! its border.
+//! A batch of slices makes a step of Adam with constant parameters. Its `epsilon` exceeds the gradient by
+//! orders of magnitude, so that it is gradient descent with momentum in effect. Samples that leave the square
+//! are put back on its border.
 //!
 //! Slices run in parallel, on plain arrays, compiled like the library.
 //!
@@ -26,11 +27,13 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
 
+use crate::random::GOLDEN;
+
 /// Up to which filter weight levels are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Levels {
-    /// The weight of the filtered pixel in the current frame. A kernel that peaks in the past is clipped there: it
-    /// becomes almost a box in time. The published spatio-temporal loop does so.
+    /// The weight of the filtered pixel in the current frame. A kernel that peaks in the past is clipped
+    /// there: it becomes almost a box in time. The published spatio-temporal loop does so.
     CurrentFrame,
     /// The greatest weight.
     Peak,
@@ -49,8 +52,9 @@ pub struct Parameters {
     pub levels: Levels,
     /// Slices per iteration.
     pub batch: usize,
-    /// Step of gradient descent that Adam amounts to: the mean displacement over the slices of a batch, most of which
-    /// hold a given sample not at all, times `gain` is what the sample moves, once its momentum has built up.
+    /// Step of gradient descent that Adam amounts to: the mean displacement over the slices of a batch, most
+    /// of which hold a given sample not at all, times `gain` is what the sample moves, once its momentum has
+    /// built up.
     pub gain: f32,
     /// Names every random number.
     pub seed: u64,
@@ -67,6 +71,7 @@ const LEAST_EXPONENT: f32 = -80.0;
 const CHUNK: usize = 64;
 
 /// A table of two dimensions on its way.
+#[derive(Debug)]
 pub struct Published {
     parameters: Parameters,
     points: Vec<f32>,
@@ -76,6 +81,7 @@ pub struct Published {
 }
 
 /// Buffers of one slice.
+#[derive(Debug)]
 struct Workspace {
     kept: Vec<usize>,
     projections: Vec<(f32, usize)>,
@@ -206,9 +212,6 @@ impl Published {
         }
     }
 }
-
-/// 2⁶⁴ over the golden ratio: consecutive multiples are far apart.
-const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
 impl Workspace {
     fn new(coordinates: usize) -> Self {

@@ -2,6 +2,9 @@
 
 pub(crate) use fsot::random::{finalise, generator};
 
+/// 2⁶⁴ over the golden ratio: consecutive multiples are far apart.
+pub(crate) const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
+
 /// What a generator is used for; part of its name.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Purpose {

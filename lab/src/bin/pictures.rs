@@ -1,16 +1,32 @@
-//! Draws the pictures that the stippling examples read: a lantern in grey, a garden in colour.
+//! Draws the pictures that `fsot points stipple` and `color-stipple` read: a lantern in grey, a garden in
+//! colour.
 //!
-//! `cargo run --release --example draw_pictures -- data`
+//! `cargo run --release -p fsot-lab --bin pictures -- data`
 
-use std::path::Path;
+use std::path::PathBuf;
+use std::process::ExitCode;
 
-use fsot_cli::Failure;
+use clap::Parser;
 use fsot_cli::draw::raster::Color;
+use fsot_lab::draw::srgb;
+use fsot_lab::program::{self, Failure};
 
-fn main() -> Result<(), Failure> {
-    let folder = std::env::args().nth(1).unwrap_or("data".into());
-    draw(360, 270, lantern).save(&Path::new(&folder).join("lantern.png"))?;
-    draw(320, 240, garden).save(&Path::new(&folder).join("garden.png"))
+/// Draw the pictures that the stipplings start from.
+#[derive(Parser)]
+struct Arguments {
+    /// Where lantern.png and garden.png go; made if absent.
+    #[arg(value_name = "DIR", default_value = "data")]
+    folder: PathBuf,
+}
+
+fn main() -> ExitCode {
+    program::main(run)
+}
+
+fn run(Arguments { folder }: &Arguments) -> Result<(), Failure> {
+    program::make_folder(folder)?;
+    draw(360, 270, lantern).save(&folder.join("lantern.png"))?;
+    draw(320, 240, garden).save(&folder.join("garden.png"))
 }
 
 /// A picture of what `scene` is at each place, x from 0 to the aspect ratio and y from 0 to 1, downwards.
@@ -23,12 +39,7 @@ fn draw(width: usize, height: usize, scene: impl Fn(f64, f64) -> [f64; 3]) -> Co
             let light = scene(x, y);
             sum.iter_mut().zip(light).for_each(|(sum, light)| *sum += light.clamp(0.0, 1.0) / 16.0);
         }
-        // Linear light to sRGB.
-        sum.map(|light| {
-            let value =
-                if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 };
-            (255.0 * value).round() as u8
-        })
+        sum.map(srgb)
     })
 }
 

@@ -7,7 +7,6 @@ use exr::error::Error;
 use exr::image::{Image, SpecificChannels};
 use exr::math::Vec2;
 use exr::prelude::WritableImage;
-
 use fsot::files::WholeFile;
 
 /// Writes a picture of so many columns and rows, linear and in 32 bits; the file appears whole or not at all.

@@ -2,6 +2,8 @@
 
 mod exr;
 mod spectrum;
+mod srgb;
 
 pub use exr::write_exr;
 pub use spectrum::{gray, write_gray_png, write_radial_csv};
+pub use srgb::srgb;

@@ -1,14 +1,14 @@
 //! Spectra as pictures and tables on disk.
 
-use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io;
 use std::path::Path;
 
-use ndarray::Array2;
-
-use fsot::files::TableError;
+use fsot::files::{TableError, WholeFile};
 use fsot::metrics::RadialBin;
 use fsot_cli::draw::raster::Grey;
+use ndarray::Array2;
+
+use crate::figures::write_csv;
 
 /// An 8-bit gray picture of an array, one pixel per entry: 0 is black, `white` and everything above is white,
 /// linear between. NaN is black.
@@ -25,34 +25,33 @@ pub fn gray(values: &Array2<f64>, white: f64) -> Grey {
 /// # Errors
 /// The file cannot be written.
 pub fn write_gray_png(path: &Path, values: &Array2<f64>, white: f64) -> Result<(), TableError> {
-    gray(values, white).write_png(path).map_err(|source| TableError::Io {
-        verb: "write",
-        path: path.to_owned(),
-        source,
-    })
+    gray(values, white).write_png(path).map_err(|source| unwritten(path, source))
 }
 
 /// Writes a radial average as CSV with the columns `frequency_cycles_per_px,power,count`, over an existing
-/// file.
+/// file; it appears whole or not at all.
 ///
 /// # Errors
 /// The file cannot be written.
 pub fn write_radial_csv(path: &Path, bins: &[RadialBin]) -> Result<(), TableError> {
-    let write = || {
-        let mut file = BufWriter::new(File::create(path)?);
-        writeln!(file, "frequency_cycles_per_px,power,count")?;
-        for RadialBin { frequency, power, count } in bins {
-            writeln!(file, "{frequency:.6},{power:.6e},{count}")?;
-        }
-        file.flush()
+    let columns = ["frequency_cycles_per_px", "power", "count"];
+    let row = |bin: &RadialBin| {
+        [format!("{:.6}", bin.frequency), format!("{:.6e}", bin.power), format!("{}", bin.count)]
     };
-    write().map_err(|source| TableError::Io { verb: "write", path: path.to_owned(), source })
+    WholeFile::write(path, |out| write_csv(out, columns, bins.iter().map(row)))
+        .and_then(WholeFile::commit)
+        .map_err(|source| unwritten(path, source))
+}
+
+fn unwritten(path: &Path, source: io::Error) -> TableError {
+    TableError::Io { verb: "write", path: path.to_owned(), source }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use ndarray::array;
+
+    use super::*;
 
     #[test]
     fn pictures_clip_at_black_and_white_and_come_back_from_disk() {

@@ -3,8 +3,9 @@
 //! Directions are unit vectors in a frame whose third axis is the surface normal and point away from the
 //! surface; both have positive third components, else nothing is reflected.
 
-use std::f64::consts::{FRAC_1_PI, FRAC_PI_4, TAU};
+use std::f64::consts::{FRAC_1_PI, TAU};
 
+use fsot::targets::VectorMap;
 use nalgebra::{Matrix3, Vector3};
 
 /// What a surface does with light.
@@ -17,9 +18,9 @@ pub enum Material {
     },
     /// GGX microfacets[^walter] with height-correlated Smith masking[^heitz] and single scattering.
     ///
-    /// Light that would bounce between facets is lost, so even with `reflectance` 1 a rough lobe reflects less
-    /// than it receives. What is exactly 1 is the *weak* white furnace: the lobe without shadowing, integrated
-    /// over the whole sphere.
+    /// Light that would bounce between facets is lost, so even with `reflectance` 1 a rough lobe reflects
+    /// less than it receives. What is exactly 1 is the *weak* white furnace: the lobe without shadowing,
+    /// integrated over the whole sphere.
     ///
     /// [^walter]: Walter, Marschner, Li, Torrance 2007, "Microfacet models for refraction".
     /// [^heitz]: Heitz 2014, "Understanding the masking-shadowing function", JCGT 3(2).
@@ -99,21 +100,9 @@ fn lambda(direction: &Vector3<f64>, alpha: f64) -> f64 {
     ((1.0 + alpha * alpha * tan_sq).sqrt() - 1.0) / 2.0
 }
 
-/// The unit square onto the unit disc, preserving area and neighbourhood (Shirley and Chiu 1997).
-pub fn concentric_disc([u, v]: [f64; 2]) -> [f64; 2] {
-    let (a, b) = (2.0 * u - 1.0, 2.0 * v - 1.0);
-    if a == 0.0 && b == 0.0 {
-        return [0.0, 0.0];
-    }
-    let (r, phi) =
-        if a.abs() > b.abs() { (a, FRAC_PI_4 * (b / a)) } else { (b, 2.0 * FRAC_PI_4 - FRAC_PI_4 * (a / b)) };
-    [r * phi.cos(), r * phi.sin()]
-}
-
 /// A direction above the surface with density cos θ / π.
 pub fn cosine_hemisphere(uv: [f64; 2]) -> Vector3<f64> {
-    let [x, y] = concentric_disc(uv);
-    Vector3::new(x, y, (1.0 - x * x - y * y).max(0.0).sqrt())
+    VectorMap::CosineHemisphere.vector(uv).into()
 }
 
 /// A rotation whose columns are two tangents and the unit normal (Duff et al. 2017).
@@ -151,9 +140,9 @@ mod tests {
 
     #[test]
     fn weak_white_furnace_is_one() {
-        // ∫ G1(o) D(h) / (4 cos o) over the sphere of incoming directions (Heitz 2014, eq. 86): the density of
-        // visible-normal sampling, so this is also its normalisation. The midpoint
-        // rule on 800 x 400 points meets a jump at h·n = 0: its error is of the order of 1/800.
+        // ∫ G1(o) D(h) / (4 cos o) over the sphere of incoming directions (Heitz 2014, eq. 86): the density
+        // of visible-normal sampling, so this is also its normalisation. The midpoint rule on 800 x 400
+        // points meets a jump at h·n = 0: its error is of the order of 1/800.
         for (alpha, cos) in [(0.15, 0.9), (0.5, 0.5), (1.0, 0.2), (1.0, 1.0)] {
             let ggx = Material::Ggx { alpha, reflectance: 1.0 };
             let outgoing = towards(cos);

@@ -1,8 +1,8 @@
 //! Pinhole and thin-lens cameras.
 
+use fsot::targets::VectorMap;
 use nalgebra::{Point3, Vector3};
 
-use super::bsdf::concentric_disc;
 use super::shape::Ray;
 
 /// A camera with square pixels; image row 0 is at the top.
@@ -28,8 +28,8 @@ pub struct Lens {
 }
 
 impl Camera {
-    /// The ray through the centre of pixel `(y, x)`. With a lens, `lens_uv` (in `[0, 1)²`, mapped to the disc by
-    /// the area-preserving concentric map) says where it starts; a pinhole ignores it.
+    /// The ray through the centre of pixel `(y, x)`. With a lens, `lens_uv` (in `[0, 1)²`, mapped to the disc
+    /// by the area-preserving concentric map) says where it starts; a pinhole ignores it.
     pub fn ray(&self, [y, x]: [usize; 2], [height, width]: [usize; 2], lens_uv: [f64; 2]) -> Ray {
         let forward = (self.target - self.eye).normalize();
         let right = forward.cross(&Vector3::y()).normalize();
@@ -42,7 +42,7 @@ impl Camera {
         match self.lens {
             None => Ray { origin: self.eye, direction: direction.normalize() },
             Some(lens) => {
-                let [a, b] = concentric_disc(lens_uv).map(|c| c * lens.radius);
+                let [a, b, _] = VectorMap::Disc.vector(lens_uv).map(|c| c * lens.radius);
                 let origin = self.eye + right * a + up * b;
                 // `direction` has depth 1, so the focused point lies `focus_distance` of it away.
                 let focused = self.eye + direction * lens.focus_distance;

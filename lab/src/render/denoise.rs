@@ -1,30 +1,30 @@
 //! An edge-avoiding filter guided by normals and depth: the denoiser after the sampler[^dammertz].
 //!
-//! [^dammertz]: Dammertz, Sewtz, Hanika, Lensch 2010, "Edge-avoiding À-trous wavelet transform for fast global
-//!     illumination filtering", HPG. Weights of normals as in Schied et al. 2017, "Spatiotemporal variance-guided
-//!     filtering", HPG; of depth, by the distance from the tangent plane.
+//! [^dammertz]: Dammertz, Sewtz, Hanika, Lensch 2010, "Edge-avoiding À-trous wavelet transform for fast
+//!     global illumination filtering", HPG. Weights of normals as in Schied et al. 2017, "Spatiotemporal
+//!     variance-guided filtering", HPG; of depth, by the distance from the tangent plane.
 
+use fsot::config::RangeError;
 use rayon::prelude::*;
 
 use super::error::RenderError;
 use super::film::Film;
 use super::guides::{Guide, Guides};
-use fsot::config::RangeError;
 
-/// An à-trous filter: `levels` passes of a 5 × 5 B-spline whose taps lie 1, 2, 4, … pixels apart, each tap weighted by how
-/// alike the surfaces are. One level alone is a bilateral filter of 5 × 5 pixels.
+/// An à-trous filter: `levels` passes of a 5 × 5 B-spline whose taps lie 1, 2, 4, … pixels apart, each tap
+/// weighted by how alike the surfaces are. One level alone is a bilateral filter of 5 × 5 pixels.
 ///
-/// The radiance takes no part in the weights, so the filter is linear: what it makes of an error does not depend on the
-/// truth, and the expectation for white noise is exact ([`Denoiser::apply_to_variance`]). Weights inside the picture
-/// sum to 1.
+/// The radiance takes no part in the weights, so the filter is linear: what it makes of an error does not
+/// depend on the truth, and the expectation for white noise is exact ([`Denoiser::apply_to_variance`]).
+/// Weights inside the picture sum to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Denoiser {
     /// Passes, from 1 to 5; 3 reach 14 pixels.
     pub levels: u32,
     /// Exponent of the cosine between normals, at least 0; 128 in Schied et al. 2017. 0 ignores normals.
     pub normal_power: f64,
-    /// Distance from the tangent plane, as a share of the depth, at which a weight falls to 1/e; positive. Infinite
-    /// ignores depth.
+    /// Distance from the tangent plane, as a share of the depth, at which a weight falls to 1/e; positive.
+    /// Infinite ignores depth.
     pub plane_share: f64,
 }
 
@@ -62,7 +62,8 @@ impl Denoiser {
         Ok(out)
     }
 
-    /// Variances after the filter, from those of independent pixels: the weights of all passes together, squared.
+    /// Variances after the filter, from those of independent pixels: the weights of all passes together,
+    /// squared.
     ///
     /// O(pixels · 25 · 4^levels).
     ///

@@ -2,11 +2,10 @@
 
 use std::path::PathBuf;
 
-use thiserror::Error;
-
 use fsot::ConfigError;
 use fsot::config::{ExtentError, RangeError};
 use fsot::kernel::KernelError;
+use thiserror::Error;
 
 /// A rendering, a picture or a comparison that cannot be made.
 #[derive(Debug, Error)]

@@ -6,7 +6,7 @@ use std::path::Path;
 use fsot_cli::draw::raster::Grey;
 
 use super::error::{RenderError, not_empty};
-use crate::draw::write_exr;
+use crate::draw::{srgb, write_exr};
 
 /// Linear luminance `[frame][y][x]` in C order.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,6 +66,19 @@ impl Film {
         Ok(&self.values[frame * height * width..(frame + 1) * height * width])
     }
 
+    /// The differences of all values from those of another film: the error, if that is the truth.
+    ///
+    /// # Errors
+    /// Different shapes.
+    pub fn minus(&self, truth: &Self) -> Result<Self, RenderError> {
+        if self.shape != truth.shape {
+            let (given, expected) = (self.shape, truth.shape);
+            return Err(RenderError::Shape { what: "the rendering", given, expected });
+        }
+        let pairs = self.values.iter().zip(&truth.values);
+        Ok(Self { shape: self.shape, values: pairs.map(|(value, truth)| value - truth).collect() })
+    }
+
     /// One frame as 8-bit grey: times `exposure`, clamped to `[0, 1]`, sRGB curve.
     ///
     /// # Errors
@@ -101,13 +114,6 @@ impl Film {
 
 fn unwritten(path: &Path, source: io::Error) -> RenderError {
     RenderError::Io { verb: "write", path: path.into(), source }
-}
-
-/// The sRGB transfer curve (IEC 61966-2-1) in 8 bits.
-fn srgb(linear: f64) -> u8 {
-    let linear = linear.clamp(0.0, 1.0);
-    let curved = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
-    (curved * 255.0).round() as u8
 }
 
 #[cfg(test)]

@@ -17,9 +17,9 @@ impl Scene {
     ///
     /// | name | dimensions | frames | what varies |
     /// |---|---|---|---|
-    /// | `soft_shadow` | light | 1 | penumbrae of a sphere and a box, and the plain fall-off of an area light |
+    /// | `soft_shadow` | light | 1 | penumbrae of a sphere and a box, the fall-off of an area light |
     /// | `defocus` | lens, light | 1 | three spheres at different depths, two out of focus |
-    /// | `glossy` | light, bsdf | 1 | rough floor and spheres under three lights, by multiple importance sampling |
+    /// | `glossy` | light, bsdf | 1 | rough floor and spheres, three lights, multiple importance sampling |
     /// | `ambient_occlusion` | direction | 1 | contact shadows within 1.5 units |
     /// | `animated_soft_shadow` | light | 30 | a sphere that crosses the floor |
     pub fn by_name(name: &str) -> Option<Self> {

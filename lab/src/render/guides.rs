@@ -1,11 +1,11 @@
 //! What a denoiser may know of a pixel without noise: where its surface is and how it is turned.
 
+use fsot::config::RangeError;
 use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
 
 use super::error::{RenderError, not_empty};
 use super::scene::Scene;
-use fsot::config::RangeError;
 
 /// The surface in the middle of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,7 +27,8 @@ pub struct Guides {
 }
 
 impl Guides {
-    /// Traces one ray a pixel, through the middle of the lens if there is one: what is out of focus has sharp guides.
+    /// Traces one ray a pixel, through the middle of the lens if there is one: what is out of focus has sharp
+    /// guides.
     ///
     /// # Errors
     /// A resolution of 0.
@@ -54,8 +55,8 @@ impl Guides {
     /// Guides that are known from elsewhere, row by row.
     ///
     /// # Errors
-    /// A resolution of 0; a number of guides that does not fit it; a guide that is not finite, whose normal is not a unit vector
-    /// (to 1e-3) or whose depth is not positive.
+    /// A resolution of 0; a number of guides that does not fit it; a guide that is not finite, whose normal
+    /// is not a unit vector (to 1e-3) or whose depth is not positive.
     pub fn new([height, width]: [usize; 2], pixels: Vec<Option<Guide>>) -> Result<Self, RenderError> {
         not_empty("height", height)?;
         not_empty("width", width)?;

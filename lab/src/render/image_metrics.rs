@@ -1,14 +1,17 @@
 //! Errors of a rendering as ratios to white noise.
 //!
 //! White noise needs no drawing: samples are independent between pixels, so the expected squared error of a
-//! pixel is `variance / spp`, and after a filter with weights `w` it is `Σ w² variance / spp`. Both come from the
-//! [`Reference`]. At the borders of the image filters are cut off and renormalised: their weights inside sum to 1.
+//! pixel is `variance / spp`, and after a filter with weights `w` it is `Σ w² variance / spp`. Both come from
+//! the
+//! [`Reference`]. At the borders of the image filters are cut off and renormalised: their weights inside sum
+//! to 1.
+
+use fsot::config::RangeError;
+use fsot::kernel::{SpatialKernel, TemporalKernel};
 
 use super::error::RenderError;
 use super::film::Film;
 use super::reference::Reference;
-use fsot::config::RangeError;
-use fsot::kernel::{SpatialKernel, TemporalKernel};
 
 /// Guards relative errors where the reference is dark.
 const EPSILON: f64 = 0.01;
@@ -53,7 +56,8 @@ impl ImageFilter {
         Ok(self)
     }
 
-    /// The filtered film. Only frames with their whole past are kept: `k` temporal taps drop the first `k - 1`.
+    /// The filtered film. Only frames with their whole past are kept: `k` temporal taps drop the first
+    /// `k - 1`.
     ///
     /// # Errors
     /// Fewer frames than temporal taps.
@@ -156,11 +160,19 @@ impl Comparison {
     }
 }
 
-/// Width of the spatial filters of perceptual errors, in pixels (Georgiev and Fajardo 2016; Salaün et al. 2022).
+/// Width of the spatial filters of perceptual errors, in pixels (Georgiev and Fajardo 2016; Salaün et al.
+/// 2022).
 const SIGMA_PX: f64 = 2.1;
 
-/// Compares a rendering of `spp` samples a pixel to the truth. `temporal` filters perceptual errors only, and they
-/// are taken over the frames that have their whole past.
+/// The mean of `f(value) / (truth² + 0.01)` over the pixels of films of one shape.
+pub fn relative_mean(film: &Film, truth: &Film, f: impl Fn(f64) -> f64) -> f64 {
+    let pairs = film.values().iter().zip(truth.values());
+    let terms = pairs.map(|(&value, &truth)| f(value) / (truth * truth + EPSILON));
+    terms.sum::<f64>() / film.values().len() as f64
+}
+
+/// Compares a rendering of `spp` samples a pixel to the truth. `temporal` filters perceptual errors only, and
+/// they are taken over the frames that have their whole past.
 ///
 /// # Errors
 /// Different shapes; 0 samples; a temporal kernel out of range or longer than the film.
@@ -171,22 +183,17 @@ pub fn compare(
     temporal: &TemporalKernel,
 ) -> Result<Comparison, RenderError> {
     super::error::not_empty("spp", spp as usize)?;
-    let (given, expected) = (film.shape(), reference.mean.shape());
-    if given != expected {
-        return Err(RenderError::Shape { what: "the rendering", given, expected });
-    }
-    let map = |a: &Film, b: &Film, f: &dyn Fn(f64, f64) -> f64| {
-        Film::new(expected, a.values().iter().zip(b.values()).map(|(&a, &b)| f(a, b)).collect())
+    let error = film.minus(&reference.mean)?;
+    let map = |film: &Film, f: &dyn Fn(f64) -> f64| {
+        Film::new(film.shape(), film.values().iter().map(|&value| f(value)).collect())
     };
-    let error = map(film, &reference.mean, &|image, truth| image - truth)?;
-    let white = map(&reference.variance, &reference.mean, &|variance, _| variance / f64::from(spp))?;
-    let floor = map(&reference.standard_error, &reference.mean, &|error, _| error * error)?;
+    let white = map(&reference.variance, &|variance| variance / f64::from(spp))?;
+    let floor = map(&reference.standard_error, &|error| error * error)?;
     let figure = |filter: &ImageFilter, relative: bool| -> Result<Figure, RenderError> {
         let truth = filter.apply(&reference.mean)?;
-        let mean = |film: &Film, f: fn(f64) -> f64| {
-            let weight = |truth: f64| if relative { 1.0 / (truth * truth + EPSILON) } else { 1.0 };
-            let terms = film.values().iter().zip(truth.values()).map(|(&e, &truth)| f(e) * weight(truth));
-            terms.sum::<f64>() / film.values().len() as f64
+        let mean = |film: &Film, f: fn(f64) -> f64| match relative {
+            true => relative_mean(film, &truth, f),
+            false => film.values().iter().map(|&value| f(value)).sum::<f64>() / film.values().len() as f64,
         };
         Ok(Figure {
             value: mean(&filter.apply(&error)?, |e| e * e),

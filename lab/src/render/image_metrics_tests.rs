@@ -1,9 +1,9 @@
 use approx::assert_relative_eq;
+use fsot::Extent;
 
 use super::*;
 use crate::render::{Scene, render};
 use crate::samplers::WhiteNoise;
-use fsot::Extent;
 
 fn constant(shape: [usize; 3], value: f64) -> Film {
     Film::new(shape, vec![value; shape.iter().product()]).unwrap()
@@ -35,8 +35,8 @@ fn a_constant_error_passes_every_filter_also_at_the_borders() {
 
 #[test]
 fn a_cosine_is_damped_by_the_gaussians_transform() {
-    // Σ exp(−k²/σ²) cos(ωk) / Σ exp(−k²/σ²) = exp(−ω²σ²/4) up to aliasing of exp(−π²σ²) ≈ 1e-19: the middle of a
-    // wide image shows it, far from the borders.
+    // Σ exp(−k²/σ²) cos(ωk) / Σ exp(−k²/σ²) = exp(−ω²σ²/4) up to aliasing of exp(−π²σ²) ≈ 1e-19: the middle
+    // of a wide image shows it, far from the borders.
     let width = 120;
     let omega = std::f64::consts::TAU / 12.0;
     let wave = |x: usize| (omega * x as f64).cos();

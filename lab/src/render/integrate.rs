@@ -1,10 +1,11 @@
 //! Estimators: how random numbers become a pixel's radiance.
 //!
-//! Every pixel is prepared once a frame. What is constant there is found by geometry, not by sampling, and then
-//! no number is drawn: background, lights, black surfaces, surfaces that face away from every light, and full
-//! shadow. The last rests on convexity: seen from a point outside a convex blocker, the region behind it is convex,
-//! so a light whose four corners all lie behind the *same* blocker is hidden as a whole.
+//! Every pixel is prepared once a frame. What is constant there is found by geometry, not by sampling, and
+//! then no number is drawn: background, lights, black surfaces, surfaces that face away from every light, and
+//! full shadow. The last rests on convexity: seen from a point outside a convex blocker, the region behind it
+//! is convex, so a light whose four corners all lie behind the *same* blocker is hidden as a whole.
 
+use fsot::Site;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
@@ -14,7 +15,6 @@ use super::film::Film;
 use super::scene::{Hit, Integrator, Scene};
 use super::shape::Ray;
 use crate::samplers::Sampler;
-use fsot::Site;
 
 /// What is known of a pixel before any number is drawn.
 #[derive(Clone, Copy, Debug)]
@@ -33,8 +33,8 @@ impl<F: FnMut(u32) -> [f64; 2]> Draw for F {}
 
 /// Renders every frame with `spp` samples a pixel, in parallel over rows.
 ///
-/// The result does not depend on the number of threads. Of sample `s` the dimensions `2g` and `2g + 1` of group
-/// `g` of [`Scene::dimension_groups`] are drawn, and only where the group is used.
+/// The result does not depend on the number of threads. Of sample `s` the dimensions `2g` and `2g + 1` of
+/// group `g` of [`Scene::dimension_groups`] are drawn, and only where the group is used.
 ///
 /// # Errors
 /// A resolution or a number of samples or frames of 0.
@@ -210,8 +210,8 @@ impl Scene {
         }
     }
 
-    /// Light from one point on the lights; `weight` is told the densities of that point and of its direction by
-    /// reflection, per steradian.
+    /// Light from one point on the lights; `weight` is told the densities of that point and of its direction
+    /// by reflection, per steradian.
     fn direct(
         &self,
         surface: &Surface,
@@ -243,7 +243,8 @@ impl Scene {
         value * light.radiance / density * weight(density, reflected)
     }
 
-    /// Light that a reflected ray runs into, weighted against [`direct`](Self::direct) by the balance heuristic.
+    /// Light that a reflected ray runs into, weighted against [`direct`](Self::direct) by the balance
+    /// heuristic.
     fn reflected(&self, surface: &Surface, uv: [f64; 2]) -> f64 {
         let Some((weight, ray, density)) = surface.reflect(uv) else { return 0.0 };
         let end = self.nearest(&ray).map(|(t, _)| t);

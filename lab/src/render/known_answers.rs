@@ -2,12 +2,11 @@
 
 use std::f64::consts::PI;
 
+use fsot::{Extent, SampleTable, Site};
 use nalgebra::Vector3;
 
 use super::*;
 use crate::samplers::{OwenSobol, Sampler, TableSampler, WhiteNoise};
-use fsot::SampleTable;
-use fsot::{Extent, Site};
 
 /// One checker, every sampler.
 fn every_sampler(check: impl Fn(&str, &dyn Sampler)) {
@@ -145,8 +144,9 @@ fn light_samples_and_both_strategies_agree_on_a_glossy_floor() {
 
 #[test]
 fn an_integrating_sphere_spreads_light_evenly() {
-    // Within a Lambertian sphere every patch exchanges with every other alike, so a light of flux Φ = π L A gives,
-    // after one reflection, the irradiance ρ Φ / (4πR²) everywhere, whatever the place and pose of the light.
+    // Within a Lambertian sphere every patch exchanges with every other alike, so a light of flux Φ = π L A
+    // gives, after one reflection, the irradiance ρ Φ / (4πR²) everywhere, whatever the place and pose of the
+    // light.
     let (albedo, radius) = (0.8, 2.0);
     let mut scene = empty(camera([0.0, 1.0, 0.0], [0.3, 0.5, -2.0], 0.5), Integrator::OneBounce);
     let ball = Shape::Sphere { center: [0.0; 3].into(), radius };
@@ -161,8 +161,8 @@ fn an_integrating_sphere_spreads_light_evenly() {
 
 #[test]
 fn a_heaviside_card_covers_a_segment_of_the_lens() {
-    // White background, black half-plane card whose edge crosses the lens at signed distance d (in lens radii) from
-    // its centre as seen from the focused point: the free share is (acos d − d √(1−d²)) / π.
+    // White background, black half-plane card whose edge crosses the lens at signed distance d (in lens
+    // radii) from its centre as seen from the focused point: the free share is (acos d − d √(1−d²)) / π.
     let (radius, focus, depth) = (0.5, 8.0, 2.0);
     for d in [-0.6, 0.0, 0.35, 0.9_f64] {
         let mut camera = camera([0.0; 3], [0.0, 0.0, -1.0], 1e-3);

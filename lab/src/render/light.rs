@@ -21,8 +21,8 @@ impl Light {
         Self { rectangle, radiance, velocity: Vector3::zeros() }
     }
 
-    /// Whether an unblocked surface element there can receive any of its light: the element lies before the light
-    /// and some corner rises above the element's plane.
+    /// Whether an unblocked surface element there can receive any of its light: the element lies before the
+    /// light and some corner rises above the element's plane.
     pub fn reaches(&self, point: Point3<f64>, normal: &Vector3<f64>) -> bool {
         let along = self.rectangle.edge_u.cross(&self.rectangle.edge_v);
         let before = (point - self.rectangle.corner).dot(&along) > 0.0;
@@ -37,8 +37,8 @@ impl Light {
 
     /// Irradiance of an unblocked surface element: Lambert's formula for a polygon, clipped at the horizon.
     ///
-    /// `E = L/2 Σ θᵢ n·γᵢ` over the edges, with θ the angle that the edge subtends and γ the unit normal of the
-    /// plane through edge and element (Lambert 1760; Baum, Rushmeier and Winget 1989).
+    /// `E = L/2 Σ θᵢ n·γᵢ` over the edges, with θ the angle that the edge subtends and γ the unit normal of
+    /// the plane through edge and element (Lambert 1760; Baum, Rushmeier and Winget 1989).
     pub fn irradiance(&self, point: Point3<f64>, normal: &Vector3<f64>) -> f64 {
         if !self.reaches(point, normal) {
             return 0.0;
@@ -89,8 +89,8 @@ mod tests {
 
     #[test]
     fn irradiance_has_its_textbook_values() {
-        // An endless ceiling gives π L; a square of half-side a at height 1 above the point, by symmetry of the
-        // form factor of a rectangle above its corner: 4 L a/√(1+a²) atan(a/√(1+a²)).
+        // An endless ceiling gives π L; a square of half-side a at height 1 above the point, by symmetry of
+        // the form factor of a rectangle above its corner: 4 L a/√(1+a²) atan(a/√(1+a²)).
         let up = Vector3::y();
         assert_relative_eq!(ceiling(1e6).irradiance(Point3::origin(), &up), PI, epsilon = 1e-5);
         for a in [0.1_f64, 1.0, 3.0] {

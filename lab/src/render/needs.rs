@@ -1,24 +1,25 @@
 //! Which pixels of a scene have any variance.
 
+use fsot::classes::Demand;
+use fsot::{Extent, Site};
+
 use super::error::RenderError;
 use super::integrate::{Pixel, for_each_pixel};
 use super::scene::Scene;
 use crate::samplers::{OwenSobol, Sampler};
-use fsot::classes::Demand;
-use fsot::{Extent, Site};
 
 /// Samples that must agree to the last bit before a pixel behind a lens counts as constant.
 const PROBES: u32 = 256;
 
 /// The pixels whose value depends on the random numbers, per frame, and the groups of dimensions consumed.
 ///
-/// Through a pinhole the answer is geometric and certain: background, visible lights, black or averted surfaces,
-/// full shadow and free hemispheres are recognised exactly (`integrate`), and every other pixel is demanded, also
-/// where the variance is only that of a fully visible area light.
+/// Through a pinhole the answer is geometric and certain: background, visible lights, black or averted
+/// surfaces, full shadow and free hemispheres are recognised exactly (`integrate`), and every other pixel is
+/// demanded, also where the variance is only that of a fully visible area light.
 ///
-/// Behind a lens it is found by probing: a pixel counts as constant if 256 Owen-scrambled Sobol' samples of it and of
-/// each of its eight neighbours agree exactly. What such a pixel may hide covers less than about 1/256 of its lens
-/// and of its neighbours' lenses.
+/// Behind a lens it is found by probing: a pixel counts as constant if 256 Owen-scrambled Sobol' samples of
+/// it and of each of its eight neighbours agree exactly. What such a pixel may hide covers less than about
+/// 1/256 of its lens and of its neighbours' lenses.
 ///
 /// # Errors
 /// A resolution or a number of frames of 0.

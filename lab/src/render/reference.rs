@@ -4,12 +4,13 @@ use std::fs;
 use std::io::Write;
 use std::path::Path;
 
+use fsot::files::WholeFile;
+
 use super::error::{RenderError, not_empty};
 use super::film::Film;
 use super::integrate::{Pixel, for_each_pixel};
 use super::scene::Scene;
 use crate::samplers::{OwenSobol, Sampler};
-use fsot::files::WholeFile;
 
 /// Independent randomisations; their spread is the reference's standard error.
 const RANDOMISATIONS: u32 = 8;
@@ -21,15 +22,17 @@ pub struct Reference {
     pub mean: Film,
     /// Standard error of `mean`, from the spread of eight independent randomisations.
     pub standard_error: Film,
-    /// Variance of *one* sample: white noise at `n` samples a pixel has the expected squared error `variance / n`.
+    /// Variance of *one* sample: white noise at `n` samples a pixel has the expected squared error
+    /// `variance / n`.
     pub variance: Film,
 }
 
 impl Reference {
-    /// Renders with `spp` Owen-scrambled Sobol' samples a pixel: eight randomisations of `spp / 8` each, rounded up.
+    /// Renders with `spp` Owen-scrambled Sobol' samples a pixel: eight randomisations of `spp / 8` each,
+    /// rounded up.
     ///
-    /// Powers of two are best. The time is that of [`render`](super::render) at `spp` samples; constant pixels
-    /// cost nothing.
+    /// Powers of two are best. The time is that of [`render`](super::render) at `spp` samples; constant
+    /// pixels cost nothing.
     ///
     /// # Errors
     /// A resolution or a number of samples or frames of 0.
@@ -75,9 +78,9 @@ impl Reference {
 
     /// The reference from a file in `directory`, or rendered and put there.
     ///
-    /// The file's name holds scene, resolution, `spp`, the crate's version and a fingerprint of the scene. A file
-    /// of another length, with a wrong checksum or an impossible value is not trusted: it is rendered anew and
-    /// replaced.
+    /// The file's name holds scene, resolution, `spp`, the crate's version and a fingerprint of the scene. A
+    /// file of another length, with a wrong checksum or an impossible value is not trusted: it is rendered
+    /// anew and replaced.
     ///
     /// # Errors
     /// As [`render`](Self::render), and a directory that cannot be made or written to.
@@ -156,8 +159,9 @@ mod tests {
         let scene = Scene::by_name("soft_shadow").unwrap();
         let coarse = Reference::render(&scene, RESOLUTION, 256).unwrap();
         let fine = Reference::render(&scene, RESOLUTION, 4096).unwrap();
-        // Over all pixels the mean of (difference / error)² is that of a t² with 7 degrees of freedom, 7/5, with a
-        // standard deviation of about 3 a pixel: over 100 pixels and more 1.4 ± 0.3. Errors over 5 times are a bug.
+        // Over all pixels the mean of (difference / error)² is that of a t² with 7 degrees of freedom, 7/5,
+        // with a standard deviation of about 3 a pixel: over 100 pixels and more 1.4 ± 0.3. Errors over 5
+        // times are a bug.
         let (mut sum, mut count) = (0.0, 0.0);
         for i in 0..fine.mean.values().len() {
             let error = coarse.standard_error.values()[i].hypot(fine.standard_error.values()[i]);

@@ -12,18 +12,19 @@ use super::shape::{Ray, Shape};
 /// A thin lens puts its two dimensions before those named here.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Integrator {
-    /// Direct light by one point on the lights: `[light u, light v]`. Several lights share `u` in equal strips.
-    /// The environment lights nothing.
+    /// Direct light by one point on the lights: `[light u, light v]`. Several lights share `u` in equal
+    /// strips. The environment lights nothing.
     Light,
-    /// Direct light by one point on the lights and one reflected ray, combined by the balance heuristic[^veach]:
-    /// `[light u, light v, bsdf u, bsdf v]`. Rays that escape see the environment.
+    /// Direct light by one point on the lights and one reflected ray, combined by the balance
+    /// heuristic[^veach]: `[light u, light v, bsdf u, bsdf v]`. Rays that escape see the environment.
     ///
     /// [^veach]: Veach and Guibas 1995, "Optimally combining sampling techniques".
     LightAndBsdf,
     /// Direct light as in [`Integrator::Light`], and light reflected once on the way:
     /// `[light u, light v, bsdf u, bsdf v, light u', light v']`. Rays that escape see the environment.
     OneBounce,
-    /// Share of the cosine-weighted hemisphere that is free up to a distance, whatever the material: `[u, v]`.
+    /// Share of the cosine-weighted hemisphere that is free up to a distance, whatever the material:
+    /// `[u, v]`.
     AmbientOcclusion {
         /// Reach of the rays in scene units.
         distance: f64,

@@ -129,8 +129,8 @@ impl Shape {
         self.hit(ray).is_some_and(|(t, _)| t < 1.0 - 1e-9)
     }
 
-    /// Whether the point is not within the solid. Seen from there, the region behind the shape is convex: with two
-    /// points it holds the segment between them.
+    /// Whether the point is not within the solid. Seen from there, the region behind the shape is convex:
+    /// with two points it holds the segment between them.
     pub fn excludes(&self, point: Point3<f64>) -> bool {
         match self {
             Shape::Plane { .. } | Shape::Rectangle(_) => true,

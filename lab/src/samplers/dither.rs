@@ -3,13 +3,14 @@
 //! [^georgiev]: Georgiev and Fajardo 2016, "Blue-noise dithered sampling", SIGGRAPH Talks,
 //!     <https://doi.org/10.1145/2897839.2927430>.
 
+use fsot::kernel::{Kernel, SpatialKernel, TemporalKernel};
+use fsot::{Extent, SampleTable};
+
 use super::anneal::{self, Cooling, Law, Neighbours, Pairs};
 use crate::samplers::SamplerError;
-use fsot::Extent;
-use fsot::SampleTable;
-use fsot::kernel::{Kernel, SpatialKernel, TemporalKernel};
 
-/// How a dither mask is made: one point of `[0, 1)^D` per pixel, arranged so that near pixels get unlike points.
+/// How a dither mask is made: one point of `[0, 1)^D` per pixel, arranged so that near pixels get unlike
+/// points.
 ///
 /// The energy of a mask with points `s_p` at the pixels `p` is (the equation of the paper)
 ///
@@ -17,12 +18,12 @@ use fsot::kernel::{Kernel, SpatialKernel, TemporalKernel};
 /// E(M) = Σ_{p ≠ q} exp(−‖p − q‖² / σ_i² − ‖s_p − s_q‖^(D/2) / σ_s²).
 /// ```
 ///
-/// Distances of pixels wrap, distances of points do not; pixels beyond 0.1 % of the weight of the nearest are left
-/// out. The points are an Owen-scrambled Sobol' net, so any mask fills the cube evenly (the paper starts from random
-/// points). Several frames are masks of their own.
+/// Distances of pixels wrap, distances of points do not; pixels beyond 0.1 % of the weight of the nearest are
+/// left out. The points are an Owen-scrambled Sobol' net, so any mask fills the cube evenly (the paper starts
+/// from random points). Several frames are masks of their own.
 ///
-/// A mask is used as the shift of a pattern that all pixels share: [`Shifted`](super::Shifted). Read as samples,
-/// through [`TableSampler`](super::TableSampler), it is a table for one sample per pixel.
+/// A mask is used as the shift of a pattern that all pixels share: [`Shifted`](super::Shifted). Read as
+/// samples, through [`TableSampler`](super::TableSampler), it is a table for one sample per pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DitherMask {
     /// Frames, height and width; `spp` has to be 1. At most 2³¹ values.

@@ -1,8 +1,12 @@
 //! Sobol' sequences whose scrambling keys are arranged so that the errors of near pixels differ[^heitz].
 //!
-//! [^heitz]: Heitz, Belcour, Ostromoukhov, Coeurjolly, Iehl 2019, "A low-discrepancy sampler that distributes Monte Carlo
-//!     errors as a blue noise in screen space", SIGGRAPH Talks, <https://doi.org/10.1145/3306307.3328191>.
+//! [^heitz]: Heitz, Belcour, Ostromoukhov, Coeurjolly, Iehl 2019, "A low-discrepancy sampler that distributes
+//!     Monte Carlo errors as a blue noise in screen space", SIGGRAPH Talks,
+//!     <https://doi.org/10.1145/3306307.3328191>.
 
+use fsot::config::RangeError;
+use fsot::kernel::{Kernel, SpatialKernel, TemporalKernel};
+use fsot::{Extent, SampleTable};
 use rand::seq::SliceRandom;
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
@@ -12,36 +16,34 @@ use super::anneal::{self, Cooling, Dots, Neighbours};
 use super::mixed;
 use crate::random::{self, Purpose};
 use crate::samplers::SamplerError;
-use fsot::Extent;
-use fsot::SampleTable;
-use fsot::config::RangeError;
-use fsot::kernel::{Kernel, SpatialKernel, TemporalKernel};
 
 /// How the keys are arranged.
 ///
-/// Every pixel has a key, the seed of its own Owen-scrambled Sobol' sequence, and a vector `ε` of its signed errors
-/// over many Heaviside functions of random orientation and offset. Swapping keys between pixels maximises the
-/// paper's energy
+/// Every pixel has a key, the seed of its own Owen-scrambled Sobol' sequence, and a vector `ε` of its signed
+/// errors over many Heaviside functions of random orientation and offset. Swapping keys between pixels
+/// maximises the paper's energy
 ///
 /// ```text
 /// Σ_{p, q} exp(−‖p − q‖² / σ²) · ‖ε_p − ε_q‖²,
 /// ```
 ///
-/// in which only `−2 ε_p · ε_q` depends on the arrangement. Within a pixel nothing changes, so the error of single
-/// pixels is that of Owen-scrambled Sobol', and at worst the errors of pixels are uncorrelated.
+/// in which only `−2 ε_p · ε_q` depends on the arrangement. Within a pixel nothing changes, so the error of
+/// single pixels is that of Owen-scrambled Sobol', and at worst the errors of pixels are uncorrelated.
 ///
-/// Then every pixel's *ranking key*, XORed to the index of its samples, is chosen from the highest bit to the lowest
-/// so that the first half, quarter, … of its samples err unlike its neighbours' as well: a renderer may stop at any
-/// power of two. (The paper chooses ranking keys by the same energy.)
+/// Then every pixel's *ranking key*, XORed to the index of its samples, is chosen from the highest bit to the
+/// lowest so that the first half, quarter, … of its samples err unlike its neighbours' as well: a renderer
+/// may stop at any power of two. (The paper chooses ranking keys by the same energy.)
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScramblingKeys {
-    /// Frames, height, width, and samples per pixel: a power of two up to 65536. Frames are arranged one by one.
+    /// Frames, height, width, and samples per pixel: a power of two up to 65536. Frames are arranged one by
+    /// one.
     pub extent: Extent,
     /// Dimensions of a sample, `1..=64`. The fewer, the bluer.
     pub dims: usize,
     /// `σ` in pixels, in `(0, 1e6]`; 2.1 as in Georgiev and Fajardo 2016.
     pub sigma_px: f64,
-    /// Test functions, from 1 to 65536 (rounded up to a multiple of 16). Few are learnt by heart; the default is 128.
+    /// Test functions, from 1 to 65536 (rounded up to a multiple of 16). Few are learnt by heart; the default
+    /// is 128.
     pub integrands: usize,
     /// Temperatures are in units of `Σ w ε_p · ε_q` with the mean of `‖ε‖²` scaled to 1.
     pub cooling: Cooling,
@@ -132,8 +134,8 @@ impl Heavisides {
         self.planes.len()
     }
 
-    /// Errors of the first `spp` samples of each key and rank, `[pixel][function]`, scaled so that a pixel's vector has
-    /// the squared length 1 in the mean. The truth is the mean over all pixels.
+    /// Errors of the first `spp` samples of each key and rank, `[pixel][function]`, scaled so that a pixel's
+    /// vector has the squared length 1 in the mean. The truth is the mean over all pixels.
     fn errors(&self, keys: &[u32], ranks: &[u32], spp: usize) -> Vec<f32> {
         let count = self.count();
         let mut errors = vec![0.0; keys.len() * count];

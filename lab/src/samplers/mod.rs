@@ -1,28 +1,29 @@
 //! Who hands a renderer its random numbers.
 //!
-//! A [`Sampler`] is asked by (frame, pixel, sample, dimension), in any order and from any thread, and always gives
-//! the same answer to the same question (the contract of pbrt-v4's samplers, without their hidden state). It is not
-//! told how many samples there will be; where a number of samples was chosen beforehand, fewer of them are a worse set.
+//! A [`Sampler`] is asked by (frame, pixel, sample, dimension), in any order and from any thread, and always
+//! gives the same answer to the same question (the contract of pbrt-v4's samplers, without their hidden
+//! state). It is not told how many samples there will be; where a number of samples was chosen beforehand,
+//! fewer of them are a worse set.
 //!
 //! * [`TableSampler`] reads an optimised [`SampleTable`];
 //! * [`WhiteNoise`] is plain Monte Carlo, the yardstick of every ratio;
 //! * [`OwenSobol`] is the strongest sampler that knows nothing of its neighbours.
 //!
-//! The samplers of the literature that filtered sliced optimal transport is compared with are here as well, each from
-//! its paper's description. Most are recipes for a table:
+//! The samplers of the literature that filtered sliced optimal transport is compared with are here as well,
+//! each from its paper's description. Most are recipes for a table:
 //!
 //! | recipe | arranges | after |
 //! |---|---|---|
 //! | [`stratified`] | nothing: jittered pixels | Cook 1986 |
-//! | [`Shifted`] [`Pattern`] | nothing: a lattice, toroidally shifted per pixel | Cranley and Patterson 1976 |
+//! | [`Shifted`] [`Pattern`] | nothing: a lattice, shifted per pixel | Cranley and Patterson 1976 |
 //! | [`DitherMask`] | unlike values at near pixels | Georgiev and Fajardo 2016 |
 //! | [`ScramblingKeys`] | unlike errors at near pixels | Heitz et al. 2019 |
 //! | [`SeedPermutation`], [`histogram_sampling`] | rendered values by a mask | Heitz and Belcour 2019 |
 //! | [`Stbn`] | unlike values in space and in time | Wolfe et al. 2022 |
 //! | [`Fast`] | the energy distance under a filter | Donnelly et al. 2024 |
 //!
-//! The same seed gives the same table at any number of threads. Across platforms, exponentials and powers of the standard
-//! library may round differently, and annealing amplifies that.
+//! The same seed gives the same table at any number of threads. Across platforms, exponentials and powers of
+//! the standard library may round differently, and annealing amplifies that.
 
 mod anneal;
 mod dither;
@@ -51,14 +52,15 @@ pub use stratified::stratified;
 pub use table::TableSampler;
 pub use white::WhiteNoise;
 
-use fsot::SampleTable;
 use fsot::config::RangeError;
-use fsot::{Extent, Site};
+use fsot::{Extent, SampleTable, Site};
+
+use crate::random::{GOLDEN, finalise};
 
 /// Random numbers of a renderer, as a pure function of where they are used.
 pub trait Sampler: Sync {
-    /// Coordinate `dim` of sample `sample` at this site, in `[0, 1)`. All indices are unbounded: frame, row and
-    /// column may lie outside a table's tile.
+    /// Coordinate `dim` of sample `sample` at this site, in `[0, 1)`. All indices are unbounded: frame, row
+    /// and column may lie outside a table's tile.
     fn sample(&self, site: Site, sample: u32, dim: u32) -> f32;
 
     /// Coordinates `dim` and `dim + 1`, equal to two calls of [`sample`](Self::sample).
@@ -79,9 +81,17 @@ impl<S: Sampler + ?Sized> Sampler for &S {
 
 /// Mixes a seed and a list of words into 64 unrelated bits, one round of SplitMix64 a word.
 fn mixed(seed: u64, words: &[u64]) -> u64 {
-    words.iter().fold(crate::random::finalise(seed), |state, &word| {
-        crate::random::finalise(state ^ word.wrapping_mul(0x9e37_79b9_7f4a_7c15))
-    })
+    words.iter().fold(finalise(seed), |state, &word| finalise(state ^ word.wrapping_mul(GOLDEN)))
+}
+
+/// One step of the R2 sequence (Roberts 2018), across and down, as shares of a side.
+const R2: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
+
+/// Where the `index`-th realisation of a table of `[height, width]` pixels lies: displaced by the R2
+/// sequence, far from each other for as many as there are frames. Index 0 stays in place.
+pub fn displacement(index: u64, [height, width]: [usize; 2]) -> Site {
+    let at = |step: f64, len: usize| ((index as f64 * step).fract() * len as f64) as usize;
+    Site { frame: 0, y: at(R2[1], height), x: at(R2[0], width) }
 }
 
 /// Checks the extent of a table that has one sample per pixel by construction.
@@ -176,6 +186,14 @@ mod tests {
                 assert!((mean - 0.5).abs() < allowed, "{name} dim {dim}: {mean}");
             }
         });
+    }
+
+    #[test]
+    fn displacements_are_steps_of_r2() {
+        let steps = fsot::random::kronecker_steps(2);
+        assert!(R2.iter().zip(steps).all(|(r2, step)| (r2 - step).abs() < 1e-15));
+        assert_eq!(displacement(0, [64, 32]), Site { frame: 0, y: 0, x: 0 });
+        assert_eq!(displacement(1, [64, 32]), Site { frame: 0, y: 36, x: 24 });
     }
 
     #[test]

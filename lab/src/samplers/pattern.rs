@@ -2,12 +2,12 @@
 
 use std::f64::consts::PI;
 
+use fsot::Site;
+use fsot::config::{BELOW_ONE, ExtentError, MOST_DIMS, RangeError};
+use fsot::random::kronecker_steps;
+
 use super::{Sampler, mixed};
 use crate::samplers::SamplerError;
-use fsot::Site;
-use fsot::config::{BELOW_ONE, MOST_DIMS};
-use fsot::config::{ExtentError, RangeError};
-use fsot::random::kronecker_steps;
 
 /// A finite list of points of `[0, 1)^dims`.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,15 +38,15 @@ impl Pattern {
         Ok(Self { dims: generator.len(), values: values.collect() })
     }
 
-    /// The best Korobov lattice, `z = (1, a, a², …) mod n`: of all `a` without a divisor in common with `n`, so that every
-    /// coordinate has `n` values, the one with the least
+    /// The best Korobov lattice, `z = (1, a, a², …) mod n`: of all `a` without a divisor in common with `n`,
+    /// so that every coordinate has `n` values, the one with the least
     ///
     /// ```text
     /// P₂ = −1 + 1/n Σ_i Π_d (1 + 2π² B₂(frac(i z_d / n))),   B₂(x) = x² − x + 1/6,
     /// ```
     ///
-    /// the squared worst-case error for periodic functions with square-integrable mixed second derivatives[^sloan].
-    /// O(n² dims).
+    /// the squared worst-case error for periodic functions with square-integrable mixed second
+    /// derivatives[^sloan]. O(n² dims).
     ///
     /// [^sloan]: Sloan and Joe 1994, "Lattice methods for multiple integration", chapter 4; Korobov 1959.
     ///
@@ -75,10 +75,11 @@ impl Pattern {
     }
 
     /// The first points of a Kronecker sequence, `frac(i · (1/φ, 1/φ², …))` with the root `φ` of
-    /// `φ^(dims + 1) = φ + 1`: the golden ratio for one dimension, R2 for two[^roberts]. Any number of first points is
-    /// a good set. The first is the origin.
+    /// `φ^(dims + 1) = φ + 1`: the golden ratio for one dimension, R2 for two[^roberts]. Any number of first
+    /// points is a good set. The first is the origin.
     ///
-    /// [^roberts]: Roberts 2018, "The unreasonable effectiveness of quasirandom sequences", extremelearning.com.au.
+    /// [^roberts]: Roberts 2018, "The unreasonable effectiveness of quasirandom sequences",
+    ///     extremelearning.com.au.
     ///
     /// # Errors
     /// 0 points or more than 65536; 0 dimensions or more than 64.
@@ -145,10 +146,10 @@ fn below_one(value: f64) -> f32 {
 
 /// A pattern shifted toroidally in every pixel, `frac(pattern + shift)` (Cranley and Patterson 1976).
 ///
-/// The shifts come from another sampler, sample 0 of each pixel: [`WhiteNoise`](super::WhiteNoise) makes pixels
-/// independent; a [`DitherMask`](super::DitherMask) through a [`TableSampler`](super::TableSampler) is blue-noise
-/// dithered sampling. Samples beyond the pattern repeat it with the shift's next sample; dimensions beyond it are the
-/// shift's own, sample by sample.
+/// The shifts come from another sampler, sample 0 of each pixel: [`WhiteNoise`](super::WhiteNoise) makes
+/// pixels independent; a [`DitherMask`](super::DitherMask) through a [`TableSampler`](super::TableSampler) is
+/// blue-noise dithered sampling. Samples beyond the pattern repeat it with the shift's next sample;
+/// dimensions beyond it are the shift's own, sample by sample.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shifted<S> {
     pattern: Pattern,

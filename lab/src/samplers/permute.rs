@@ -1,27 +1,28 @@
-//! A-posteriori blue noise: pixels choose among their own estimates, or exchange their seeds between frames[^heitz].
+//! A-posteriori blue noise: pixels choose among their own estimates, or exchange their seeds between
+//! frames[^heitz].
 //!
-//! Unlike every other sampler here these look at rendered values: they need no model of the integrand, and assume that
-//! near pixels, or the next frame, have nearly the same one.
+//! Unlike every other sampler here these look at rendered values: they need no model of the integrand, and
+//! assume that near pixels, or the next frame, have nearly the same one.
 //!
-//! [^heitz]: Heitz and Belcour 2019, "Distributing Monte Carlo errors as a blue noise in screen space by permuting pixel
-//!     seeds between frames", CGF 38(4), <https://doi.org/10.1111/cgf.13778>.
+//! [^heitz]: Heitz and Belcour 2019, "Distributing Monte Carlo errors as a blue noise in screen space by
+//!     permuting pixel seeds between frames", CGF 38(4), <https://doi.org/10.1111/cgf.13778>.
 
+use fsot::config::{ExtentError, RangeError};
+use fsot::{SampleTable, Site};
 use rand::RngExt;
 
 use super::pattern::gcd;
 use super::{Sampler, mixed};
 use crate::random::{self, Purpose};
 use crate::samplers::SamplerError;
-use fsot::SampleTable;
-use fsot::Site;
-use fsot::config::{ExtentError, RangeError};
 
-/// Histogram sampling (the paper's section 3): at every pixel the estimate whose rank among `estimates` is the mask's
-/// value there.
+/// Histogram sampling (the paper's section 3): at every pixel the estimate whose rank among `estimates` is
+/// the mask's value there.
 ///
-/// `estimates` are renderings of the same frame with independent numbers, all of `mask.len()` pixels; `mask` holds values in
-/// `[0, 1)`. Each pixel's result is one of its estimates, of a random rank: unbiased, and as noisy as one of them, but
-/// its error follows the mask. The price is rendering all of them. O(pixels · n log n).
+/// `estimates` are renderings of the same frame with independent numbers, all of `mask.len()` pixels; `mask`
+/// holds values in `[0, 1)`. Each pixel's result is one of its estimates, of a random rank: unbiased, and as
+/// noisy as one of them, but its error follows the mask. The price is rendering all of them. O(pixels · n log
+/// n).
 ///
 /// # Errors
 /// No estimate, or one whose length is not that of the mask.
@@ -48,12 +49,13 @@ fn check_pixels(name: &'static str, given: usize, pixels: usize) -> Result<(), R
 
 /// The temporal algorithm (the paper's section 4): seeds of a picture that change places after every frame.
 ///
-/// As a [`Sampler`] it gives each pixel the Owen-scrambled Sobol' sequence of its seed. After a frame is rendered
-/// [`advance`](Self::advance) *sorts*: in blocks of 4 × 4 pixels the seeds are exchanged so that the pixel values they
-/// just gave have the order of the mask's values. Then it *retargets*: the mask of the next frame is the same mask
-/// displaced, and a permutation found beforehand takes seeds from where the one mask has a value to where the next has
-/// nearly the same. Blocks lie elsewhere in every frame. Seeds are only ever permuted, so the set of sequences stays
-/// the same.
+/// As a [`Sampler`] it gives each pixel the Owen-scrambled Sobol' sequence of its seed. After a frame is
+/// rendered
+/// [`advance`](Self::advance) *sorts*: in blocks of 4 × 4 pixels the seeds are exchanged so that the pixel
+/// values they just gave have the order of the mask's values. Then it *retargets*: the mask of the next frame
+/// is the same mask displaced, and a permutation found beforehand takes seeds from where the one mask has a
+/// value to where the next has nearly the same. Blocks lie elsewhere in every frame. Seeds are only ever
+/// permuted, so the set of sequences stays the same.
 #[derive(Clone, Debug)]
 pub struct SeedPermutation {
     height: usize,
@@ -74,12 +76,14 @@ const BLOCK: usize = 4;
 /// How far retargeting may carry a seed in each direction, in pixels; the paper uses a radius of 6.
 const RADIUS: i64 = 6;
 
-/// By how much the mask is displaced from frame to frame, as shares of the tile: that of the R2 sequence, up to the next number
-/// without a divisor in common with the tile's side, so that no place comes again before all have been there.
-const STEP: [f64; 2] = [0.569_840_290_998_053_3, 0.754_877_666_246_692_8];
+/// By how much the mask is displaced from frame to frame, as shares of the tile: that of the R2 sequence, up
+/// to the next number without a divisor in common with the tile's side, so that no place comes again before
+/// all have been there.
+const STEP: [f64; 2] = [super::R2[1], super::R2[0]];
 
 impl SeedPermutation {
-    /// Random seeds for a picture of `[height, width]` pixels, to follow the first frame and dimension of a mask.
+    /// Random seeds for a picture of `[height, width]` pixels, to follow the first frame and dimension of a
+    /// mask.
     ///
     /// O(tile) memory and some 50 ms per 64 × 64 pixels of the tile for the retargeting.
     ///
@@ -183,8 +187,9 @@ impl SeedPermutation {
         }
     }
 
-    /// For every pixel of the tile, the pixel whose value in frame 0 is nearly that of the pixel in frame 1: pairs
-    /// change places while that lowers the sum of squared differences and nobody goes farther than the radius.
+    /// For every pixel of the tile, the pixel whose value in frame 0 is nearly that of the pixel in frame 1:
+    /// pairs change places while that lowers the sum of squared differences and nobody goes farther than the
+    /// radius.
     fn retargeting(&self) -> Vec<u32> {
         const SWEEPS: usize = 500;
         let [height, width] = self.tile;
@@ -232,9 +237,10 @@ impl Sampler for SeedPermutation {
 
 #[cfg(test)]
 mod tests {
+    use fsot::Extent;
+
     use super::*;
     use crate::samplers::DitherMask;
-    use fsot::Extent;
 
     fn correlation(pairs: &[(f64, f64)]) -> f64 {
         let count = pairs.len() as f64;
@@ -261,7 +267,8 @@ mod tests {
                 picture(seeds).into_iter().enumerate().map(|(i, value)| (value, level(i))).collect();
             correlation(&pairs)
         };
-        // Values without connection correlate by 0 ± 1/64; the mask with itself elsewhere by up to a few times that.
+        // Values without connection correlate by 0 ± 1/64; the mask with itself elsewhere by up to a few
+        // times that.
         assert!(like(&seeds, 0).abs() < 5.0 / 64.0);
         seeds.advance(&picture(&seeds)).unwrap();
         let (last, next) = (like(&seeds, 0), like(&seeds, 1));

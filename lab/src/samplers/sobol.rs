@@ -2,8 +2,9 @@
 //!
 //! [^burley]: Burley 2020, "Practical hash-based Owen scrambling", JCGT 9(4); the crate `sobol_burley`.
 
-use super::{Sampler, mixed};
 use fsot::Site;
+
+use super::{Sampler, mixed};
 
 /// An Owen-scrambled Sobol' sequence per pixel and frame, each with its own seed.
 ///

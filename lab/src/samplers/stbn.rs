@@ -3,18 +3,18 @@
 //! [^wolfe]: Wolfe, Morrical, Akenine-Möller, Ramamoorthi 2022, "Spatiotemporal blue noise masks", EGSR,
 //!     <https://doi.org/10.2312/sr.20221161>.
 
+use fsot::kernel::{Kernel, SpatialKernel, TemporalKernel};
+use fsot::{Extent, SampleTable};
+
 use super::anneal::{self, Cooling, Law, Neighbours, Pairs};
 use super::void_cluster;
 use crate::samplers::SamplerError;
-use fsot::Extent;
-use fsot::SampleTable;
-use fsot::kernel::{Kernel, SpatialKernel, TemporalKernel};
 
 /// How a spatio-temporal blue-noise mask is made.
 ///
-/// Two sites see each other if they share the frame, with the weight `exp(−‖p − q‖² / (2 σ_xy²))`, or the pixel, with
-/// `exp(−(t_p − t_q)² / (2 σ_t²))`; others don't. That is what makes it two-dimensional and one-dimensional blue noise
-/// at once, rather than three-dimensional blue noise, whose slices are not blue.
+/// Two sites see each other if they share the frame, with the weight `exp(−‖p − q‖² / (2 σ_xy²))`, or the
+/// pixel, with `exp(−(t_p − t_q)² / (2 σ_t²))`; others don't. That is what makes it two-dimensional and
+/// one-dimensional blue noise at once, rather than three-dimensional blue noise, whose slices are not blue.
 ///
 /// One dimension is ranked by void and cluster (Ulichney 1993) under these weights. Vectors are annealed: the
 /// energy of [`DitherMask`](super::DitherMask) under these weights, swaps within frames.
@@ -52,8 +52,8 @@ impl Stbn {
 
     /// Makes the mask. The same seed gives the same bits at any number of threads.
     ///
-    /// Scalars are ranks, `(r + ½) / sites`, each once; O(sites · (taps + rows)). Vectors cost two passes over the
-    /// neighbours per proposed swap.
+    /// Scalars are ranks, `(r + ½) / sites`, each once; O(sites · (taps + rows)). Vectors cost two passes
+    /// over the neighbours per proposed swap.
     ///
     /// # Errors
     /// An empty or oversized extent; more than one sample per pixel; a parameter outside its range.

@@ -2,19 +2,18 @@
 //!
 //! [^cook]: Cook 1986, "Stochastic sampling in computer graphics", ACM TOG 5(1).
 
+use fsot::{Extent, SampleTable};
 use rand::RngExt;
 use rand::seq::SliceRandom;
 
 use crate::random::{self, Purpose};
 use crate::samplers::SamplerError;
-use fsot::Extent;
-use fsot::SampleTable;
 
 /// Jittered samples, independent from pixel to pixel.
 ///
-/// Each pair of dimensions of a pixel has its samples in the cells of a grid, as square as `spp` allows, one in each;
-/// a last odd dimension is stratified alone. Pairs are combined at random. The number of samples is part of the
-/// strata: fewer than all of them are not stratified.
+/// Each pair of dimensions of a pixel has its samples in the cells of a grid, as square as `spp` allows, one
+/// in each; a last odd dimension is stratified alone. Pairs are combined at random. The number of samples is
+/// part of the strata: fewer than all of them are not stratified.
 ///
 /// # Errors
 /// An empty or oversized extent.
@@ -44,9 +43,10 @@ pub fn stratified(extent: Extent, dims: usize, seed: u64) -> Result<SampleTable,
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use fsot::Site;
     use fsot::config::ExtentError;
+
+    use super::*;
 
     #[test]
     fn every_cell_holds_one_sample() {

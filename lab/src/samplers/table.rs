@@ -1,14 +1,15 @@
 //! A sample table as a renderer reads it: tiled over the image and the animation.
 
-use super::{Sampler, WhiteNoise, mixed};
-use fsot::SampleTable;
-use fsot::{Extent, Site};
+use fsot::{Extent, SampleTable, Site};
+
+use super::{Sampler, WhiteNoise, displacement, mixed};
 
 /// Reads an optimised table at pixel `(x mod width, y mod height)` of frame `t mod frames`.
 ///
 /// What the table does not hold is filled in, and costs quality, never correctness:
 /// * samples beyond the table's `spp` come from the same table displaced by whole pixels. Block `k` of `spp`
-///   samples is shifted by the `k`-th point of the R2 sequence[^r2], so each block alone keeps its blue noise;
+///   samples is shifted by the `k`-th point of the R2 sequence[^r2], so each block alone keeps its blue
+///   noise;
 /// * dimensions beyond the table's are white noise.
 ///
 /// [^r2]: Roberts 2018, "The unreasonable effectiveness of quasirandom sequences", extremelearning.com.au.
@@ -25,7 +26,8 @@ impl<'t> TableSampler<'t> {
         Self { table, offset: Site { frame: 0, y: 0, x: 0 }, beyond: WhiteNoise::new(0x7ab1e) }
     }
 
-    /// The table displaced: the origin reads the table's pixel `offset`. Another realisation of the same noise.
+    /// The table displaced: the origin reads the table's pixel `offset`. Another realisation of the same
+    /// noise.
     pub fn shifted(mut self, offset: Site) -> Self {
         let Extent { frames, height, width, .. } = self.table.extent();
         self.offset = Site { frame: offset.frame % frames, y: offset.y % height, x: offset.x % width };
@@ -35,24 +37,17 @@ impl<'t> TableSampler<'t> {
     }
 }
 
-/// The `block`-th point of R2 in whole pixels; block 0 stays where it is.
-fn displacement(block: u32, len: usize, ratio: f64) -> usize {
-    ((f64::from(block) * ratio).fract() * len as f64) as usize
-}
-
 impl Sampler for TableSampler<'_> {
     fn sample(&self, site: Site, sample: u32, dim: u32) -> f32 {
         if dim as usize >= self.table.dims() {
             return self.beyond.sample(site, sample, dim);
         }
-        // 1/g and 1/g² of the plastic number g = 1.3247…
-        const R2: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
         let Extent { frames, height, width, spp } = self.table.extent();
-        let block = (sample as usize / spp) as u32;
+        let Site { y, x, .. } = displacement((sample as usize / spp) as u64, [height, width]);
         let site = Site {
             frame: site.frame % frames + self.offset.frame,
-            y: site.y % height + self.offset.y + displacement(block, height, R2[1]),
-            x: site.x % width + self.offset.x + displacement(block, width, R2[0]),
+            y: site.y % height + self.offset.y + y,
+            x: site.x % width + self.offset.x + x,
         };
         self.table.sample(site, sample as usize % spp)[dim as usize]
     }

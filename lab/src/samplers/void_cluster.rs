@@ -3,11 +3,11 @@
 //! [^ulichney]: Ulichney 1993, "The void-and-cluster method for dither array generation", SPIE 1913,
 //!     <https://doi.org/10.1117/12.152707>.
 
+use fsot::Extent;
 use rand::seq::SliceRandom;
 
 use super::anneal::Neighbours;
 use crate::random::{self, Purpose};
-use fsot::Extent;
 
 /// Energies are integers, so that what is taken away is exactly what was put there.
 const UNIT: f64 = 1e6;
@@ -17,8 +17,8 @@ const JITTER: u32 = 16;
 
 /// The rank of every site.
 ///
-/// The paper's third phase, tight clusters of the unset, is its second here: with a linear filter on a torus the
-/// tightest cluster of the unset is the largest void of the set.
+/// The paper's third phase, tight clusters of the unset, is its second here: with a linear filter on a torus
+/// the tightest cluster of the unset is the largest void of the set.
 pub(super) fn ranks(extent: &Extent, neighbours: &Neighbours, seed: u64) -> Vec<u32> {
     let sites = extent.sites();
     let mut field = Field::new(extent, neighbours);
@@ -28,8 +28,8 @@ pub(super) fn ranks(extent: &Extent, neighbours: &Neighbours, seed: u64) -> Vec<
     for (place, &site) in order.iter().enumerate() {
         field.energy[site] = (place as u32 % JITTER) as i64;
     }
-    // The prototype: a tenth of the sites at random, relaxed by moving the tightest cluster to the largest void. That
-    // ends, since each move lowers the energy; the limit is for jitter that could make it circle.
+    // The prototype: a tenth of the sites at random, relaxed by moving the tightest cluster to the largest
+    // void. That ends, since each move lowers the energy; the limit is for jitter that could make it circle.
     let ones = (sites / 10).max(1);
     order[..ones].iter().for_each(|&site| field.flip(site));
     field.refresh_all();
@@ -138,8 +138,9 @@ impl<'a> Field<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use fsot::kernel::{Kernel, SpatialKernel, TemporalKernel};
+
+    use super::*;
 
     #[test]
     fn early_ranks_keep_apart() {
@@ -151,7 +152,8 @@ mod tests {
         let mut sorted = ranks.clone();
         sorted.sort_unstable();
         assert_eq!(sorted, (0..256).collect::<Vec<u32>>());
-        // Of 16 random sites 10 pairs are closer than 2.5 pixels in the mean, Poisson: none has a chance of 5e-5.
+        // Of 16 random sites 10 pairs are closer than 2.5 pixels in the mean, Poisson: none has a chance of
+        // 5e-5.
         let first: Vec<usize> = (0..256).filter(|&site| ranks[site] < 16).collect();
         let apart = |a: usize, b: usize| a.abs_diff(b).min(16 - a.abs_diff(b)).pow(2);
         for (i, p) in first.iter().enumerate() {

@@ -1,7 +1,8 @@
 //! Independent uniform numbers without state: a hash of where the number is used.
 
-use super::{Sampler, mixed};
 use fsot::Site;
+
+use super::{Sampler, mixed};
 
 /// White noise: `hash(seed, frame, y, x, sample, dim)` with 24 bits, so every multiple of 2⁻²⁴ in `[0, 1)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

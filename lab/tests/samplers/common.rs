@@ -3,7 +3,6 @@
 use fsot::kernel::{SpatialKernel, TemporalKernel};
 use fsot::metrics::{FilteredError, Integrands, Spectra};
 use fsot::{Extent, Kernel, SampleTable, Site};
-
 use fsot_lab::samplers::Sampler;
 
 pub fn tile(frames: usize, side: usize, spp: usize) -> Extent {

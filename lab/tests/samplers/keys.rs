@@ -35,7 +35,8 @@ fn filtered_errors_fall_and_unfiltered_errors_stay() {
         let [alone, after, _] = errors(&table, &gaussian(), 16);
         let white: Vec<[f64; 3]> =
             (0..8).map(|seed| errors(&shuffled(&table, seed), &gaussian(), 16)).collect();
-        // Without the filter pixels are as good as with white keys: five errors of the ratio of two means over 4096 pixels.
+        // Without the filter pixels are as good as with white keys: five errors of the ratio of two means
+        // over 4096 pixels.
         let plain = tabulated(&OwenSobol::new(9), tile(1, 64, spp), 2);
         let [usual, ..] = errors(&plain, &gaussian(), 16);
         assert!((alone / usual - 1.0).abs() < 5.0 * (4.0_f64 / 4096.0).sqrt(), "{spp} spp: {alone} {usual}");

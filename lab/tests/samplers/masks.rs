@@ -1,4 +1,5 @@
-//! Dither masks (Georgiev and Fajardo 2016), patterns shifted by them, and spatio-temporal blue noise (Wolfe et al. 2022).
+//! Dither masks (Georgiev and Fajardo 2016), patterns shifted by them, and spatio-temporal blue noise (Wolfe
+//! et al. 2022).
 
 use fsot::metrics::{Integrands, Spectra};
 use fsot::{SampleTable, Site};
@@ -40,12 +41,14 @@ fn a_lattice_shifted_by_a_mask_is_dithered() {
     let lattice = || Pattern::korobov(4, 2).unwrap();
     let dithered = tabulated(&Shifted::new(lattice(), TableSampler::new(&mask)), extent, 2);
     let white = tabulated(&Shifted::new(lattice(), WhiteNoise::new(3)), extent, 2);
-    // 4096 pixels of the same pattern: unfiltered errors agree within a few percent, far below white noise's 1.
+    // 4096 pixels of the same pattern: unfiltered errors agree within a few percent, far below white noise's
+    // 1.
     let [[dithered_alone, dithered_after, _], [white_alone, white_after, _]] =
         [&dithered, &white].map(|table| errors(table, &gaussian(), 16));
     assert!((dithered_alone / white_alone - 1.0).abs() < 0.15, "{dithered_alone} {white_alone}");
     assert!(white_alone < 0.75, "{white_alone}");
-    // About 300 independent filtered pixels: a mean square has a standard deviation of 8 %, so this is almost four.
+    // About 300 independent filtered pixels: a mean square has a standard deviation of 8 %, so this is almost
+    // four.
     assert!(dithered_after < 0.7 * white_after, "{dithered_after} {white_after}");
 }
 
@@ -71,11 +74,12 @@ fn stbn_is_blue_in_every_frame_and_at_every_pixel() {
         let mut mask = Stbn::new(tile(16, 32, 1), dims);
         mask.cooling.sweeps = 60;
         let table = mask.table().unwrap();
-        // A frame of 32 × 32 has 32 low frequencies; over 16 frames 256 conjugate pairs: white noise is 1 ± 0.0625.
+        // A frame of 32 × 32 has 32 low frequencies; over 16 frames 256 conjugate pairs: white noise is 1 ±
+        // 0.0625.
         let low = low(&table);
         assert!(low < [0.2, 0.6][dims - 1], "{dims}: {low}");
-        // The lower half in time has 1024 × 3 conjugate pairs: white noise is 1 ± 0.018. Yet a filter in time needs far
-        // less power there than above, and gets it.
+        // The lower half in time has 1024 × 3 conjugate pairs: white noise is 1 ± 0.018. Yet a filter in time
+        // needs far less power there than above, and gets it.
         let [slow, fast] = halves_in_time(&table);
         assert!(slow < [0.8, 0.9][dims - 1] && fast > 1.1, "{dims}: {slow} {fast}");
     }

@@ -8,8 +8,8 @@ use crate::common::{errors, gaussian, tile};
 
 #[test]
 fn one_frame_reaches_the_published_texture() {
-    // The released vec2 texture for this filter, a Gaussian of standard deviation 1, has 0.2047 under this metric;
-    // 256 integrands leave 2 % of standard error, but they are the same ones.
+    // The released vec2 texture for this filter, a Gaussian of standard deviation 1, has 0.2047 under this
+    // metric; 256 integrands leave 2 % of standard error, but they are the same ones.
     let begin = std::time::Instant::now();
     let table = Fast::new(tile(1, 64, 1), 2).table().unwrap();
     let seconds = begin.elapsed().as_secs_f64();
@@ -34,8 +34,9 @@ fn the_filter_decides_where_the_error_goes() {
     };
     let kernels = [product.clone(), separate.to_vec(), vec![separate[0].clone()]];
     let [for_product, for_separate, for_space] = kernels.map(make);
-    // Each is best after the filter that it was made for. 2048 sites, about 100 independent pixels after the filter in
-    // space, a mean over 64 integrands: 5 % of standard deviation, so the factors are over three of them.
+    // Each is best after the filter that it was made for. 2048 sites, about 100 independent pixels after the
+    // filter in space, a mean over 64 integrands: 5 % of standard deviation, so the factors are over three of
+    // them.
     let after = |table, kernel: &Kernel| errors(table, kernel, 16);
     let [product_own, product_space] = [&for_product, &for_space].map(|t| after(t, &product[0])[2]);
     assert!(product_own < 0.8 * product_space, "{product_own} {product_space}");

@@ -16,7 +16,8 @@ fn mask() -> SampleTable {
     mask.table().unwrap()
 }
 
-/// Share of low frequencies in a picture's error, each pixel's relative to its standard deviation; white noise 1.
+/// Share of low frequencies in a picture's error, each pixel's relative to its standard deviation; white
+/// noise 1.
 fn low(picture: &[f64], truth: &[f64], variance: &[f64]) -> f64 {
     let quiet = 0.01 * variance.iter().sum::<f64>() / 4096.0;
     let scaled: Vec<f64> = (0..4096)
@@ -45,8 +46,8 @@ fn a_histogram_of_estimates_is_dithered() {
     assert!((0..4096).all(|i| estimates.iter().any(|estimate| estimate[i] == chosen[i])));
 }
 
-/// Share of low frequencies in the error of frame 13, while the camera turns around the scene: the mean over eight
-/// permutations that have nothing in common.
+/// Share of low frequencies in the error of frame 13, while the camera turns around the scene: the mean over
+/// eight permutations that have nothing in common.
 fn later_frame(degrees_per_frame: f64) -> f64 {
     let mut scene = Scene::by_name("soft_shadow").unwrap();
     let eye = scene.camera.eye;

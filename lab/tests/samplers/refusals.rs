@@ -2,9 +2,8 @@
 
 use fsot::config::ExtentError;
 use fsot::{Extent, SampleTable};
-use fsot_lab::samplers::SamplerError;
 use fsot_lab::samplers::{
-    Cooling, DitherMask, Fast, ScramblingKeys, SeedPermutation, Stbn, histogram_sampling,
+    Cooling, DitherMask, Fast, SamplerError, ScramblingKeys, SeedPermutation, Stbn, histogram_sampling,
 };
 
 use crate::common::tile;

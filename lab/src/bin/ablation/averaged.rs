@@ -6,10 +6,10 @@ use std::time::Instant;
 use fsot::config::BELOW_ONE;
 use fsot::{Optimizer, SampleTable, Until};
 
-use crate::Failure;
+use crate::case::Failure;
 
-/// Follows the configured schedules and returns the mean of the tables after the last steps, a `share` of all; and the
-/// slices per class and the seconds.
+/// Follows the configured schedules and returns the mean of the tables after the last steps, a `share` of
+/// all; and the slices per class and the seconds.
 pub fn run(mut optimizer: Optimizer, until: Until, share: f64) -> Result<(SampleTable, f64, f64), Failure> {
     let config = optimizer.config().clone();
     let (steps, slices_per_class) = plan(&mut optimizer, until)?;

@@ -44,7 +44,7 @@ pub fn all() -> Vec<Factor> {
         Factor { title: "Momentum of SGD", variants: momenta() },
         Factor { title: "Step size of Adam", variants: adams() },
         Factor { title: "Mean of the last iterates", variants: averages() },
-        Factor { title: "FilterForm of the filter", variants: forms() },
+        Factor { title: "Form of the filter", variants: forms() },
         Factor { title: "Directions per subset", variants: directions() },
         Factor { title: "Share of directions on the axes", variants: axes() },
         Factor { title: "Share of balance slices, relative to the kernel's touches", variants: balances() },

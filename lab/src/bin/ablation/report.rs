@@ -2,7 +2,9 @@
 
 use std::fmt::Write;
 
-use crate::{Case, Outcome, Row};
+use crate::case::{Case, Outcome, Row};
+
+const COMMAND: &str = "cargo run --release -p fsot-lab --bin ablation -- --out docs --machine …";
 
 /// A heading, and a section for each title. Cases are columns.
 pub fn markdown(machine: &str, cases: &[Case], sections: &[(&str, Vec<Row>)]) -> String {
@@ -18,12 +20,13 @@ fn write_all(
     sections: &[(&str, Vec<Row>)],
 ) -> std::fmt::Result {
     writeln!(text, "# What each choice is worth\n")?;
-    writeln!(text, "Written by `cargo bench --bench ablation -- --out docs`; {machine}.\n")?;
+    writeln!(text, "Written by `{COMMAND}`; {machine}.\n")?;
     writeln!(
         text,
-        "One thing at a time is changed from the defaults, at equal slices where that does not change the cost of a slice, \
-         else at equal time (that of the defaults, as told by short runs of both right before). *Slices* are per pixel and frame; *filtered* \
-         error, *bound* and *bias* are ratios to white noise, as in the README.\n"
+        "One thing at a time is changed from the defaults, at equal slices where that does not change the cost of \
+         a slice, else at equal time (that of the defaults, as told by short runs of both right before). \
+         *Slices* are per pixel and frame; *filtered* error, *bound* and *bias* are ratios to white noise, as in \
+         the README.\n"
     )?;
     for case in cases {
         writeln!(

@@ -1,11 +1,12 @@
 //! Renders a scene with sample tables, white noise and Owen-scrambled Sobol', and says which is better.
 //!
 //! ```text
-//! cargo run --release --example compare_samplers -- --table a.npy b.npy --scene soft_shadow --spp 1 --out sheet
+//! cargo run --release -p fsot-lab --bin compare -- --table a.npy b.npy --scene glossy --out sheet
 //! ```
 //!
-//! Prints the errors as ratios to white noise and writes `SCENE-SPPspp.png`, a contact sheet with a column per
-//! sampler (rendered, filtered, filtered error, error spectrum), and one EXR of the last frame per sampler.
+//! Prints the errors as ratios to white noise and writes `SCENE-SPPspp.png`, a contact sheet with a column
+//! per sampler (rendered, filtered, filtered error, error spectrum), and one EXR of the last frame per
+//! sampler.
 
 mod sheet;
 
@@ -13,12 +14,17 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
+use fsot::SampleTable;
 use fsot::kernel::TemporalKernel;
-use fsot::{SampleTable, Site};
-use fsot_lab::render::{Comparison, Film, ImageFilter, Reference, Scene, compare, demand, render};
-use fsot_lab::samplers::{OwenSobol, Sampler, TableSampler, WhiteNoise};
+use fsot_lab::figures::mean_and_error;
+use fsot_lab::program::{self, Failure};
+use fsot_lab::render::{
+    Comparison, Film, ImageFilter, Reference, Scales, Scene, compare, demand, error_spectrum, render,
+};
+use fsot_lab::samplers::{OwenSobol, Sampler, TableSampler, WhiteNoise, displacement};
 use indicatif::{ProgressBar, ProgressStyle};
-use sheet::{Cell, Sheet};
+
+use crate::sheet::{Cell, Sheet};
 
 /// Render a scene with sample tables, white noise and Owen-scrambled Sobol', and compare their errors.
 #[derive(Parser)]
@@ -56,19 +62,11 @@ struct Args {
 }
 
 fn main() -> ExitCode {
-    match run(&Args::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::FAILURE
-        }
-    }
+    program::main(run)
 }
 
 /// A sampler's realisation with this seed.
 type Realise<'t> = Box<dyn Fn(u64) -> Box<dyn Sampler + 't> + 't>;
-
-type Outcome<T> = Result<T, fsot_cli::Failure>;
 
 /// A rendering and what is said about it.
 struct Entry {
@@ -93,28 +91,26 @@ struct Ratios {
 
 impl Ratios {
     fn mean(found: &[Comparison]) -> Self {
-        let count = found.len() as f64;
-        let mean = |ratio: fn(&Comparison) -> f64| found.iter().map(ratio).sum::<f64>() / count;
-        let p_rel_mse = mean(|c| c.p_rel_mse.ratio());
-        let spread: f64 = found.iter().map(|c| (c.p_rel_mse.ratio() - p_rel_mse).powi(2)).sum();
+        let mean = |ratio: fn(&Comparison) -> f64| found.iter().map(ratio).sum::<f64>() / found.len() as f64;
+        let ratios: Vec<f64> = found.iter().map(|c| c.p_rel_mse.ratio()).collect();
+        let (p_rel_mse, error) = mean_and_error(&ratios);
         Self {
             rmse: mean(|c| c.mse.ratio()).sqrt(),
             rel_mse: mean(|c| c.rel_mse.ratio()),
             p_rel_mse,
-            p_rel_mse_error: (spread / (count - 1.0) / count).sqrt(),
+            p_rel_mse_error: error.unwrap_or(f64::NAN),
             p_rel_mse_wide: mean(|c| c.p_rel_mse_wide.ratio()),
             floor: mean(|c| c.p_rel_mse.floor / c.p_rel_mse.white),
         }
     }
 }
 
-fn run(args: &Args) -> Outcome<()> {
+fn run(args: &Args) -> Result<(), Failure> {
     let scene = Scene::by_name(&args.scene).ok_or_else(|| {
         format!("there is no scene {:?}; choose one of {}", args.scene, Scene::NAMES.join(", "))
     })?;
     let tables = load(&args.table)?;
-    std::fs::create_dir_all(&args.out)
-        .map_err(|error| format!("cannot create {}: {error}; choose another --out", args.out.display()))?;
+    program::make_folder(&args.out)?;
     let resolution = [args.resolution as usize; 2];
     let temporal = match scene.frames {
         1 => TemporalKernel::None,
@@ -134,7 +130,7 @@ fn run(args: &Args) -> Outcome<()> {
     ];
     for (label, table) in &tables {
         let realise: Realise =
-            Box::new(|seed| Box::new(TableSampler::new(table).shifted(displacement(seed))));
+            Box::new(|seed| Box::new(TableSampler::new(table).shifted(displacement(seed, [1024; 2]))));
         contenders.push((label.clone(), notes(table, &scene, args.spp), realise));
     }
     let mut entries = Vec::new();
@@ -173,7 +169,7 @@ fn run(args: &Args) -> Outcome<()> {
 }
 
 /// Tables with labels; two files of the same name are told apart by their number.
-fn load(paths: &[PathBuf]) -> Outcome<Vec<(String, SampleTable)>> {
+fn load(paths: &[PathBuf]) -> Result<Vec<(String, SampleTable)>, Failure> {
     let mut tables: Vec<(String, SampleTable)> = Vec::new();
     for path in paths {
         let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
@@ -194,12 +190,6 @@ fn notes(table: &SampleTable, scene: &Scene, spp: u32) -> String {
         notes.push(format!("{} of {spp} spp, rest displaced", table.extent().spp));
     }
     notes.join("; ")
-}
-
-/// Seed 0 leaves tables in place; other seeds displace them by well-spread amounts.
-fn displacement(seed: u64) -> Site {
-    let at = |ratio: f64| ((seed as f64 * ratio).fract() * 1024.0) as usize;
-    Site { frame: 0, y: at(0.569_840_290_998), x: at(0.754_877_666_247) }
 }
 
 fn file_name(scene: &Scene, spp: u32, label: &str) -> String {
@@ -229,26 +219,13 @@ fn contact_sheet(
     entries: &[Entry],
     reference: &Reference,
     temporal: &TemporalKernel,
-) -> Outcome<Sheet> {
+) -> Result<Sheet, Failure> {
     let filter = ImageFilter::gaussian(2.1)?.with_temporal(temporal)?;
     let last = scene.frames - 1;
-    // The 99th percentile of what is noisy becomes almost white; visible lights may be brighter.
-    let pairs = reference.mean.values().iter().zip(reference.variance.values());
-    let mut sorted: Vec<f64> =
-        pairs.filter(|(_, variance)| **variance > 0.0).map(|(mean, _)| *mean).collect();
-    sorted.sort_by(f64::total_cmp);
-    let bright = sorted.get(sorted.len().saturating_sub(1) * 99 / 100).copied().unwrap_or(1.0);
-    let exposure = 0.9 / bright.max(1e-9);
+    let scales = Scales::new(reference, &filter, args.spp)?;
+    let exposure = scales.exposure();
     let truth = filter.apply(&reference.mean)?;
     let kept = truth.shape()[0] - 1;
-    let error_of = |film: &Film| {
-        let pairs = film.values().iter().zip(reference.mean.values());
-        Film::new(film.shape(), pairs.map(|(image, truth)| image - truth).collect())
-    };
-    // Grey is no error; the ends are three standard deviations of filtered white noise, the same for everyone.
-    let white = filter.apply_to_variance(&reference.variance)?;
-    let mean_variance = white.values().iter().sum::<f64>() / white.values().len() as f64;
-    let three = 3.0 * (mean_variance / f64::from(args.spp)).sqrt().max(1e-12);
 
     let when = if scene.frames > 1 { ", last frame" } else { "" };
     let mut sheet = Sheet::new(
@@ -283,11 +260,9 @@ fn contact_sheet(
         ],
     );
     for entry in entries {
-        let error = error_of(&entry.film)?;
+        let error = entry.film.minus(&reference.mean)?;
         let filtered_error = filter.apply(&error)?;
-        let shown: Vec<f64> =
-            filtered_error.frame(kept)?.iter().map(|error| 0.5 + 0.5 * error / three).collect();
-        let spectrum = sheet::spectrum(&error, &reference.variance, args.spp)?;
+        let spectrum = error_spectrum(&error, &reference.variance, args.spp);
         sheet.column(
             &entry.label,
             [
@@ -297,8 +272,12 @@ fn contact_sheet(
             [
                 Cell::linear("as rendered", entry.film.frame(last)?, exposure),
                 Cell::linear(after, filter.apply(&entry.film)?.frame(kept)?, exposure),
-                Cell::levels("error of the filtered", &shown),
-                Cell::levels(of_all, &spectrum),
+                Cell::levels(
+                    "error of the filtered",
+                    filtered_error.frame(kept)?.iter().map(|&error| scales.error(error)),
+                ),
+                // Half of the power, so that white noise is mid-grey.
+                Cell::levels(of_all, spectrum.iter().map(|power| power / 2.0)),
             ],
         );
     }

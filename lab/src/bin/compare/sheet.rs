@@ -1,11 +1,8 @@
 //! A labelled contact sheet: grey pictures in a grid.
 
-use fsot_lab::render::{Film, RenderError};
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex;
-
 use fsot_cli::draw::canvas::{Canvas, LETTER, LINE, MARGIN, grey};
 use fsot_cli::draw::raster::Grey;
+use fsot_lab::draw::srgb;
 
 const ROWS: usize = 4;
 
@@ -19,17 +16,13 @@ pub struct Cell {
 impl Cell {
     /// Linear luminance times an exposure, through the sRGB curve.
     pub fn linear(caption: &str, values: &[f64], exposure: f64) -> Self {
-        let curve = |value: f64| {
-            let value = (value * exposure).clamp(0.0, 1.0);
-            if value <= 0.003_130_8 { 12.92 * value } else { 1.055 * value.powf(1.0 / 2.4) - 0.055 }
-        };
-        let shown: Vec<f64> = values.iter().map(|&value| curve(value)).collect();
-        Self::levels(caption, &shown)
+        let levels = values.iter().map(|value| srgb(value * exposure)).collect();
+        Self { caption: caption.into(), content: Ok(levels) }
     }
 
     /// Grey levels in `[0, 1]` as they are to be shown; others are clamped.
-    pub fn levels(caption: &str, values: &[f64]) -> Self {
-        let levels = values.iter().map(|&value| grey(value)).collect();
+    pub fn levels(caption: &str, values: impl Iterator<Item = f64>) -> Self {
+        let levels = values.map(grey).collect();
         Self { caption: caption.into(), content: Ok(levels) }
     }
 
@@ -90,49 +83,4 @@ impl Sheet {
         }
         out.into_picture()
     }
-}
-
-/// Power of the error over spatial frequencies, mean over frames, zero frequency in the middle; half of it is
-/// shown, so white noise is mid-grey.
-///
-/// Errors are first divided by their standard deviation under white noise, else the brightest penumbra would be all
-/// that shows. A hundredth of the mean variance is added, because one rare event in an otherwise quiet pixel would be
-/// many such deviations. A 3 × 3 box calms the speckle of a single image.
-pub fn spectrum(error: &Film, variance: &Film, spp: u32) -> Result<Vec<f64>, RenderError> {
-    let [frames, height, width] = error.shape();
-    let mut planner = FftPlanner::new();
-    let (rows, columns) = (planner.plan_fft_forward(width), planner.plan_fft_forward(height));
-    let mut power = vec![0.0; height * width];
-    let variances = variance.values();
-    let quiet = 0.01 * variances.iter().sum::<f64>() / variances.len() as f64;
-    // White noise has this total power at every frequency.
-    let white: f64 = variances.iter().filter(|&&v| v > 0.0).map(|v| v / (v + quiet)).sum::<f64>().max(1e-12);
-    for frame in 0..frames {
-        let pairs = error.frame(frame)?.iter().zip(variance.frame(frame)?);
-        let normalised =
-            pairs.map(|(&e, &v)| if v > 0.0 { e * (f64::from(spp) / (v + quiet)).sqrt() } else { 0.0 });
-        let mut data: Vec<Complex<f64>> = normalised.map(|value| Complex::new(value, 0.0)).collect();
-        rows.process(&mut data);
-        let mut turned: Vec<Complex<f64>> =
-            (0..height * width).map(|i| data[i % height * width + i / height]).collect();
-        columns.process(&mut turned);
-        for (i, value) in turned.iter().enumerate() {
-            let (x, y) = (i / height, i % height);
-            let at = (y + height / 2) % height * width + (x + width / 2) % width;
-            power[at] += value.norm_sqr() / white;
-        }
-    }
-    Ok(calmed(&power, height, width).into_iter().map(|power| power / 2.0).collect())
-}
-
-/// Mean over 3 × 3 neighbours; frequencies wrap.
-fn calmed(power: &[f64], height: usize, width: usize) -> Vec<f64> {
-    let at = |y: usize, x: usize| power[y % height * width + x % width];
-    (0..height * width)
-        .map(|i| {
-            let (y, x) = (i / width + height, i % width + width);
-            let rows = y - 1..=y + 1;
-            rows.map(|y| at(y, x - 1) + at(y, x) + at(y, x + 1)).sum::<f64>() / 9.0
-        })
-        .collect()
 }

@@ -1,170 +1,184 @@
-//! Every sampler of the comparison, and how it renders.
+//! Every sampler of the comparison, and how it renders. Another one is another entry of [`CONTENDERS`].
 
 use fsot::Site;
 use fsot_lab::render::{Film, render, render_frame};
-use fsot_lab::samplers::histogram_sampling;
-use fsot_lab::samplers::{OwenSobol, Pattern, Sampler, SeedPermutation, Shifted, TableSampler, WhiteNoise};
+use fsot_lab::samplers::{
+    OwenSobol, Pattern, Sampler, SeedPermutation, Shifted, TableSampler, WhiteNoise, displacement,
+    histogram_sampling,
+};
 
 use crate::Failure;
 use crate::measure::Setting;
 use crate::shelf::{Maker, Recipe, Shelf};
 
 /// A sampler.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Contender {
-    White,
-    Stratified,
-    OwenSobol,
-    Kronecker,
-    Korobov,
-    Dither,
-    Keys,
-    Stbn,
-    FastSpace,
-    Fast,
-    FastTaa,
-    Histogram,
-    Permutation,
-    OursSpace,
-    OursEye,
-    OursTaa,
+pub struct Contender {
+    pub name: &'static str,
+    /// Whether it looks at rendered values.
+    pub a_posteriori: bool,
+    render: fn(&Rendering) -> Rendered,
 }
 
-use Contender::*;
+/// A picture, or nothing where the method does not apply.
+type Rendered = Result<Option<Film>, Failure>;
+
+impl Contender {
+    const fn new(name: &'static str, render: fn(&Rendering) -> Rendered) -> Self {
+        Self { name, a_posteriori: false, render }
+    }
+
+    const fn a_posteriori(name: &'static str, render: fn(&Rendering) -> Rendered) -> Self {
+        Self { name, a_posteriori: true, render }
+    }
+
+    /// Renders the scene, or nothing where the method does not apply.
+    pub fn render(&self, rendering: &Rendering) -> Rendered {
+        (self.render)(rendering)
+    }
+}
+
+/// All of them, in the order of the report.
+pub const CONTENDERS: [Contender; 16] = [
+    Contender::new("white noise", |r| r.picture(&WhiteNoise::new(r.seed()))),
+    Contender::new("stratified", |r| r.drifting(Maker::Stratified, r.dims(), r.spp)),
+    Contender::new("Owen-Sobol'", |r| r.picture(&OwenSobol::new(r.seed()))),
+    Contender::new("R2 + white shift", |r| {
+        let pattern = Pattern::kronecker(r.spp as usize, r.dims())?;
+        r.picture(&Shifted::new(pattern, WhiteNoise::new(r.seed())))
+    }),
+    Contender::new("lattice + white shift", |r| {
+        let pattern = Pattern::korobov(r.spp as usize, r.dims())?;
+        r.picture(&Shifted::new(pattern, WhiteNoise::new(r.seed())))
+    }),
+    Contender::new("Sobol' + dither mask", |r| {
+        let mask = r.drift(r.table(Maker::Dither, r.dims(), 1, 1)?);
+        r.picture(&Shifted::new(Pattern::sobol(r.spp as usize, r.dims(), r.seed())?, mask))
+    }),
+    Contender::new("Sobol' + arranged keys", |r| {
+        r.drifting(Maker::Keys, r.dims(), r.spp.next_power_of_two())
+    }),
+    Contender::new("STBN", |r| {
+        r.picture(&r.in_pairs(r.table(Maker::Stbn, 2, 1, r.shelf.scale.tile_frames)?))
+    }),
+    Contender::new("FAST, space", |r| r.picture(&r.drift(r.in_pairs(r.table(Maker::Fast, 2, 1, 1)?)))),
+    Contender::new("FAST, space + eye", |r| r.animated_in_pairs(Maker::Fast)),
+    Contender::new("FAST, space + TAA", |r| r.animated_in_pairs(Maker::FastTaa)),
+    Contender::a_posteriori("histogram of 8 *", |r| r.histogram()),
+    Contender::a_posteriori("seed permutation *", |r| r.permuted()),
+    Contender::new("ours, space", |r| r.drifting(Maker::Ours, r.dims(), r.spp)),
+    Contender::new("ours, space + eye", |r| r.animated(Maker::Ours)),
+    Contender::new("ours, space + TAA", |r| r.animated(Maker::OursTaa)),
+];
 
 /// Estimates that histogram sampling chooses from.
 const ESTIMATES: u64 = 8;
 
-impl Contender {
-    pub const ALL: [Self; 16] = [
-        White,
-        Stratified,
-        OwenSobol,
-        Kronecker,
-        Korobov,
-        Dither,
-        Keys,
-        Stbn,
-        FastSpace,
-        Fast,
-        FastTaa,
-        Histogram,
-        Permutation,
-        OursSpace,
-        OursEye,
-        OursTaa,
-    ];
-
-    pub fn name(self) -> &'static str {
-        match self {
-            White => "white noise",
-            Stratified => "stratified",
-            Contender::OwenSobol => "Owen-Sobol'",
-            Kronecker => "R2 + white shift",
-            Korobov => "lattice + white shift",
-            Dither => "Sobol' + dither mask",
-            Keys => "Sobol' + arranged keys",
-            Stbn => "STBN",
-            FastSpace => "FAST, space",
-            Fast => "FAST, space + eye",
-            FastTaa => "FAST, space + TAA",
-            Histogram => "histogram of 8 *",
-            Permutation => "seed permutation *",
-            OursSpace => "ours, space",
-            OursEye => "ours, space + eye",
-            OursTaa => "ours, space + TAA",
-        }
-    }
-
-    /// Whether it looks at rendered values.
-    pub fn is_a_posteriori(self) -> bool {
-        matches!(self, Histogram | Permutation)
-    }
-
-    /// Renders the scene, or nothing where the method does not apply.
-    pub fn render(
-        self,
-        shelf: &Shelf,
-        setting: &Setting,
-        spp: u32,
-        repeat: u64,
-    ) -> Result<Option<Film>, Failure> {
-        let (scene, resolution) = (&setting.scene, setting.resolution);
-        let (dims, animated) = (scene.dims(), scene.frames > 1);
-        let (tile, seed) = (shelf.scale.tile, shelf.seed.wrapping_add(repeat));
-        let table = |maker, dims, spp: u32, frames| -> Result<TableSampler, Failure> {
-            let table = shelf.table(Recipe { maker, dims, spp: spp as usize, frames })?;
-            Ok(TableSampler::new(table).shifted(displacement(repeat, tile)))
-        };
-        let drift = |table| Drift { table, tile };
-        let pairs = |table| InPairs { table, tile };
-        let picture = |sampler: &dyn Sampler| Ok(Some(render(scene, sampler, resolution, spp)?));
-        let time = if animated { shelf.scale.tile_frames } else { 1 };
-        match self {
-            White => picture(&WhiteNoise::new(seed)),
-            Stratified => picture(&drift(table(Maker::Stratified, dims, spp, 1)?)),
-            Contender::OwenSobol => picture(&fsot_lab::samplers::OwenSobol::new(seed)),
-            Kronecker => {
-                picture(&Shifted::new(Pattern::kronecker(spp as usize, dims)?, WhiteNoise::new(seed)))
-            }
-            Korobov => picture(&Shifted::new(Pattern::korobov(spp as usize, dims)?, WhiteNoise::new(seed))),
-            Dither => {
-                let mask = drift(table(Maker::Dither, dims, 1, 1)?);
-                picture(&Shifted::new(Pattern::sobol(spp as usize, dims, seed)?, mask))
-            }
-            Keys => picture(&drift(table(Maker::Keys, dims, spp.next_power_of_two(), 1)?)),
-            Stbn => picture(&pairs(table(Maker::Stbn, 2, 1, shelf.scale.tile_frames)?)),
-            FastSpace => picture(&Drift { table: pairs(table(Maker::Fast, 2, 1, 1)?), tile }),
-            Fast if animated => picture(&pairs(table(Maker::Fast, 2, 1, time)?)),
-            FastTaa if animated => picture(&pairs(table(Maker::FastTaa, 2, 1, time)?)),
-            Fast | FastTaa => Ok(None),
-            OursSpace => picture(&drift(table(Maker::Ours, dims, spp, 1)?)),
-            OursEye if animated => picture(&table(Maker::Ours, dims, spp, time)?),
-            OursTaa if animated => picture(&table(Maker::OursTaa, dims, spp, time)?),
-            OursEye | OursTaa => Ok(None),
-            Histogram if animated => Ok(None),
-            Histogram => {
-                let mask = table(Maker::Dither, 1, 1, 1)?;
-                let level = |pixel: usize| {
-                    let site = Site { frame: 0, y: pixel / resolution[1], x: pixel % resolution[1] };
-                    mask.sample(site, 0, 0)
-                };
-                let levels: Vec<f32> = (0..resolution[0] * resolution[1]).map(level).collect();
-                let seeds = (1..=ESTIMATES).map(|k| seed.wrapping_mul(ESTIMATES).wrapping_add(k));
-                let films: Result<Vec<Film>, _> =
-                    seeds.map(|seed| render(scene, &OwenSobol::new(seed), resolution, spp)).collect();
-                let films = films?;
-                let estimates: Vec<&[f64]> = films.iter().map(Film::values).collect();
-                let chosen = histogram_sampling(&estimates, &levels)?;
-                Ok(Some(Film::new([1, resolution[0], resolution[1]], chosen)?))
-            }
-            Permutation if !animated => Ok(None),
-            Permutation => {
-                let mask = shelf.table(Recipe { maker: Maker::Dither, dims: 1, spp: 1, frames: 1 })?;
-                let mut seeds = SeedPermutation::new(resolution, mask, seed)?;
-                let mut values = Vec::new();
-                for frame in 0..scene.frames {
-                    let film = render_frame(scene, frame, &seeds, resolution, spp)?;
-                    seeds.advance(film.values())?;
-                    values.extend_from_slice(film.values());
-                }
-                Ok(Some(Film::new([scene.frames, resolution[0], resolution[1]], values)?))
-            }
-        }
-    }
+/// What is rendered, and from which tables.
+pub struct Rendering<'a> {
+    pub shelf: &'a Shelf,
+    pub setting: &'a Setting,
+    pub spp: u32,
+    /// Which realisation.
+    pub repeat: u64,
 }
 
-/// Index 0 leaves tables in place; other indices displace them by the R2 sequence, far from each other for as many as
-/// there are frames.
-fn displacement(index: u64, tile: usize) -> Site {
-    let at = |ratio: f64| ((index as f64 * ratio).fract() * tile as f64) as usize;
-    Site { frame: 0, y: at(0.569_840_290_998), x: at(0.754_877_666_247) }
+impl<'a> Rendering<'a> {
+    fn seed(&self) -> u64 {
+        self.shelf.seed.wrapping_add(self.repeat)
+    }
+
+    fn dims(&self) -> usize {
+        self.setting.scene.dims()
+    }
+
+    fn is_animated(&self) -> bool {
+        self.setting.scene.frames > 1
+    }
+
+    fn picture(&self, sampler: &dyn Sampler) -> Rendered {
+        Ok(Some(render(&self.setting.scene, sampler, self.setting.resolution, self.spp)?))
+    }
+
+    /// A table, elsewhere in every realisation.
+    fn table(&self, maker: Maker, dims: usize, spp: u32, frames: usize) -> Result<TableSampler<'a>, Failure> {
+        let table = self.shelf.table(Recipe { maker, dims, spp: spp as usize, frames })?;
+        Ok(TableSampler::new(table).shifted(displacement(self.repeat, self.tile())))
+    }
+
+    fn tile(&self) -> [usize; 2] {
+        [self.shelf.scale.tile; 2]
+    }
+
+    fn drift<S>(&self, table: S) -> Drift<S> {
+        Drift { table, tile: self.tile() }
+    }
+
+    fn in_pairs<S>(&self, table: S) -> InPairs<S> {
+        InPairs { table, tile: self.tile() }
+    }
+
+    /// From a table of one frame.
+    fn drifting(&self, maker: Maker, dims: usize, spp: u32) -> Rendered {
+        self.picture(&self.drift(self.table(maker, dims, spp, 1)?))
+    }
+
+    /// From a table of many frames, for animations alone.
+    fn animated(&self, maker: Maker) -> Rendered {
+        if !self.is_animated() {
+            return Ok(None);
+        }
+        self.picture(&self.table(maker, self.dims(), self.spp, self.shelf.scale.tile_frames)?)
+    }
+
+    /// From a table of two dimensions, one sample and many frames, for animations alone.
+    fn animated_in_pairs(&self, maker: Maker) -> Rendered {
+        if !self.is_animated() {
+            return Ok(None);
+        }
+        self.picture(&self.in_pairs(self.table(maker, 2, 1, self.shelf.scale.tile_frames)?))
+    }
+
+    fn histogram(&self) -> Rendered {
+        if self.is_animated() {
+            return Ok(None);
+        }
+        let (scene, [height, width]) = (&self.setting.scene, self.setting.resolution);
+        let mask = self.table(Maker::Dither, 1, 1, 1)?;
+        let level = |pixel: usize| {
+            let site = Site { frame: 0, y: pixel / width, x: pixel % width };
+            mask.sample(site, 0, 0)
+        };
+        let levels: Vec<f32> = (0..height * width).map(level).collect();
+        let seeds = (1..=ESTIMATES).map(|k| self.seed().wrapping_mul(ESTIMATES).wrapping_add(k));
+        let films: Vec<Film> = seeds
+            .map(|seed| render(scene, &OwenSobol::new(seed), [height, width], self.spp))
+            .collect::<Result<_, _>>()?;
+        let estimates: Vec<&[f64]> = films.iter().map(Film::values).collect();
+        let chosen = histogram_sampling(&estimates, &levels)?;
+        Ok(Some(Film::new([1, height, width], chosen)?))
+    }
+
+    fn permuted(&self) -> Rendered {
+        if !self.is_animated() {
+            return Ok(None);
+        }
+        let (scene, [height, width]) = (&self.setting.scene, self.setting.resolution);
+        let mask = self.shelf.table(Recipe { maker: Maker::Dither, dims: 1, spp: 1, frames: 1 })?;
+        let mut seeds = SeedPermutation::new([height, width], mask, self.seed())?;
+        let mut values = Vec::new();
+        for frame in 0..scene.frames {
+            let film = render_frame(scene, frame, &seeds, [height, width], self.spp)?;
+            seeds.advance(film.values())?;
+            values.extend_from_slice(film.values());
+        }
+        Ok(Some(Film::new([scene.frames, height, width], values)?))
+    }
 }
 
 /// A table of one frame, elsewhere in every frame: how a purely spatial table is animated.
 struct Drift<S> {
     table: S,
-    tile: usize,
+    tile: [usize; 2],
 }
 
 impl<S: Sampler> Sampler for Drift<S> {
@@ -177,7 +191,7 @@ impl<S: Sampler> Sampler for Drift<S> {
 /// A table of two dimensions that serves every pair of them, each from elsewhere in the tile.
 struct InPairs<S> {
     table: S,
-    tile: usize,
+    tile: [usize; 2],
 }
 
 impl<S: Sampler> Sampler for InPairs<S> {

@@ -1,9 +1,10 @@
 //! Errors after each kind of smoothing, as ratios to white noise.
 
 use fsot::kernel::TemporalKernel;
-use fsot_lab::render::{Denoiser, Film, Guides, ImageFilter, Reference, Scene};
+use fsot_lab::render::{Denoiser, Film, Guides, ImageFilter, Reference, Scene, relative_mean};
 
-use crate::{Failure, Scale, scene, shelf};
+use crate::scale::Scale;
+use crate::{Failure, scene, shelf};
 
 /// What is rendered.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -39,8 +40,8 @@ impl Stage {
     }
 }
 
-/// The history of temporal antialiasing: an exponential moving average that takes a fifth of every new frame. 16 frames
-/// of it, after which 3 % are left.
+/// The history of temporal antialiasing: an exponential moving average that takes a fifth of every new frame.
+/// 16 frames of it, after which 3 % are left.
 pub fn taa() -> TemporalKernel {
     TemporalKernel::Taps((0..16).map(|back| 0.8_f64.powi(back)).collect())
 }
@@ -74,8 +75,8 @@ pub struct Setting {
     stages: Vec<Smoothed>,
 }
 
-/// A stage: what smooths, the smoothed truth, what white noise of one sample per pixel leaves, and what the reference's own
-/// error does.
+/// A stage: what smooths, the smoothed truth, what white noise of one sample per pixel leaves, and what the
+/// reference's own error does.
 struct Smoothed {
     stage: Stage,
     smoother: Smoother,
@@ -83,9 +84,6 @@ struct Smoothed {
     white: f64,
     floor: f64,
 }
-
-/// Guards relative errors where the truth is dark, as in `fsot_lab::render::Comparison`.
-const EPSILON: f64 = 0.01;
 
 impl Setting {
     pub fn new(trial: &Trial, scale: &Scale) -> Result<Self, Failure> {
@@ -124,41 +122,28 @@ impl Setting {
         for (stage, smoother) in smoothers {
             let truth = smoother.apply(&reference.mean)?;
             let white = smoother.apply_to_variance(&reference.variance)?;
-            let white = relative(&white, &truth, |variance| variance);
+            let white = relative_mean(&white, &truth, |variance| variance);
             // A reference that is repeated errs alike in all frames: no average over time lessens that.
             let floor = match trial.animated && !moves {
                 true => Smoother::Filter(ImageFilter::gaussian(2.1)?).apply_to_variance(&squared)?,
                 false => smoother.apply_to_variance(&squared)?,
             };
-            let floor = relative(&floor, &truth, |variance| variance);
+            let floor = relative_mean(&floor, &truth, |variance| variance);
             stages.push(Smoothed { stage, smoother, truth, white, floor });
         }
         Ok(Self { scene, resolution, reference, stages })
     }
 
-    /// The error of a rendering: signed, per pixel and frame.
-    pub fn error(&self, film: &Film) -> Result<Film, Failure> {
-        let pairs = film.values().iter().zip(self.reference.mean.values());
-        Ok(Film::new(film.shape(), pairs.map(|(value, truth)| value - truth).collect())?)
-    }
-
-    /// Mean over pixels and frames of the smoothed error, squared and relative to the smoothed truth, over that of white
-    /// noise. The smoothers are linear, so their own blur does not count; what the reference's own error is expected to
-    /// add is taken off.
+    /// Mean over pixels and frames of the smoothed error, squared and relative to the smoothed truth, over
+    /// that of white noise. The smoothers are linear, so their own blur does not count; what the reference's
+    /// own error is expected to add is taken off.
     pub fn ratios(&self, film: &Film, spp: u32) -> Result<Vec<(Stage, f64)>, Failure> {
-        let error = self.error(film)?;
+        let error = film.minus(&self.reference.mean)?;
         let ratio = |Smoothed { stage, smoother, truth, white, floor }: &Smoothed| {
             let smoothed = smoother.apply(&error)?;
-            let value = relative(&smoothed, truth, |error| error * error) - floor;
+            let value = relative_mean(&smoothed, truth, |error| error * error) - floor;
             Ok((*stage, value * f64::from(spp) / white))
         };
         self.stages.iter().map(ratio).collect()
     }
-}
-
-/// Mean of `f(value) / (truth² + ε)`.
-fn relative(film: &Film, truth: &Film, f: impl Fn(f64) -> f64) -> f64 {
-    let pairs = film.values().iter().zip(truth.values());
-    let terms = pairs.map(|(&value, &truth)| f(value) / (truth * truth + EPSILON));
-    terms.sum::<f64>() / film.values().len() as f64
 }

@@ -4,14 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::time::Instant;
 
-use fsot::Until;
 use fsot::classes::FilterForm;
 use fsot::config::{DimensionGroup, Term, Work};
 use fsot::kernel::{SpatialKernel, TemporalKernel};
-use fsot::{Config, Extent, Kernel, Optimizer, SampleTable};
+use fsot::{Config, Extent, Kernel, Optimizer, SampleTable, Until};
 use fsot_lab::samplers::{DitherMask, Fast, ScramblingKeys, Stbn, stratified};
 
-use crate::{Failure, Scale, measure, scene};
+use crate::scale::Scale;
+use crate::{Failure, measure, scene};
 
 /// What a table is made by.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -99,7 +99,8 @@ impl Shelf {
     pub fn make(&mut self, recipe: Recipe) -> Result<(), Failure> {
         let Recipe { maker, dims, spp, frames } = recipe;
         let Scale { tile, effort, .. } = self.scale;
-        // Ours repeat a quarter of the tile where it would be long in the making; the kernels are far smaller.
+        // Ours repeat a quarter of the tile where it would be long in the making; the kernels are far
+        // smaller.
         let long = matches!(maker, Maker::Ours | Maker::OursTaa) && frames > 1 && spp > 1;
         let side = if long { tile / 2 } else { tile };
         let extent = Extent { frames, height: side, width: side, spp };
@@ -154,8 +155,8 @@ impl Shelf {
     }
 }
 
-/// Our tables, with the optimiser's defaults: slices, then sweeps, and about as much of each for every shape. Slices take
-/// time in proportion to the samples of a pixel, sweeps to their square.
+/// Our tables, with the optimiser's defaults: slices, then sweeps, and about as much of each for every shape.
+/// Slices take time in proportion to the samples of a pixel, sweeps to their square.
 fn ours(config: Config, tile: usize, effort: f64) -> Result<SampleTable, Failure> {
     let Extent { frames, height, width, spp } = config.extent;
     let room = (tile * tile) as f64 / (height * width) as f64;

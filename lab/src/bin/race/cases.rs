@@ -2,9 +2,9 @@
 
 use fsot::Extent;
 use fsot::kernel::TemporalKernel;
-
 use fsot_lab::published::{Levels, Parameters};
 
+#[derive(Clone, Debug)]
 pub struct Case {
     pub name: &'static str,
     pub extent: Extent,
@@ -16,7 +16,8 @@ pub struct Case {
     /// First look at the published loop.
     pub published_first_seconds: f64,
     pub published_seconds: f64,
-    /// What the published program takes per slice on a machine of this type, on two threads, where it was measured.
+    /// What the published program takes per slice on a machine of this type, on two threads, where it was
+    /// measured.
     pub published_program_us: Option<f64>,
     /// Test integrands per family.
     pub integrands: usize,
@@ -91,9 +92,9 @@ fn animated(name: &'static str, side: usize, frames: usize) -> Case {
     Case { extent, published, ..case }
 }
 
-// The published programs' own constants are not known in our units. With these, the filtered error by iteration is
-// within 18 % of theirs, below it early and at most 4 % above it late. Static, after 64, 1024, 4096 iterations: 0.68,
-// 0.29, 0.25 (theirs 0.82, 0.33, 0.24; a gain of 4 gives 0.77, 0.33, 0.26). Animated, after 120 and 1000: 0.59, 0.34
-// (theirs 0.59, 0.38).
+// The published programs' own constants are not known in our units. With these, the filtered error by
+// iteration is within 18 % of theirs, below it early and at most 4 % above it late. Static, after 64, 1024,
+// 4096 iterations: 0.68, 0.29, 0.25 (theirs 0.82, 0.33, 0.24; a gain of 4 gives 0.77, 0.33, 0.26). Animated,
+// after 120 and 1000: 0.59, 0.34 (theirs 0.59, 0.38).
 const STATIC_GAIN: f32 = 7.0;
 const ANIMATED_GAIN: f32 = 15.0;

@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
+use fsot_lab::judge::Quality;
+use fsot_lab::program;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use crate::{Curve, Failure, Outcome, Point};
-use fsot_lab::judge::Quality;
+use crate::outcome::{Curve, Failure, Outcome, Point};
 
 const PANEL: (u32, u32) = (460, 340);
 const FONT: &str = "sans-serif";
@@ -43,9 +44,16 @@ const TOP: f64 = 34.0;
 const RIGHT: f64 = 100.0; // room for the labels of curves
 const BOTTOM: f64 = 44.0;
 
-pub fn write(path: &Path, outcomes: &[Outcome]) -> Result<(), Failure> {
+/// Draws all outcomes into an SVG file.
+pub fn save(path: &Path, outcomes: &[Outcome]) -> Result<(), Failure> {
+    let mut text = String::new();
+    write(&mut text, outcomes)?;
+    program::save(path, text.as_bytes())
+}
+
+fn write(text: &mut String, outcomes: &[Outcome]) -> Result<(), Failure> {
     let size = (PANEL.0 * outcomes.len() as u32, PANEL.1 * ROWS.len() as u32);
-    let root = SVGBackend::new(path, size).into_drawing_area();
+    let root = SVGBackend::with_string(text, size).into_drawing_area();
     root.fill(&WHITE)?;
     let panels = root.split_evenly((ROWS.len(), outcomes.len()));
     for (index, panel) in panels.iter().enumerate() {
@@ -56,8 +64,7 @@ pub fn write(path: &Path, outcomes: &[Outcome]) -> Result<(), Failure> {
 }
 
 fn draw(panel: &Area, outcome: &Outcome, (title, figure): Row) -> Result<(), Failure> {
-    let curves = || outcome.ours.iter().chain([&outcome.published]);
-    let points = || curves().flat_map(|curve| &curve.points);
+    let points = || outcome.curves().flat_map(|curve| &curve.points);
     let frame = Frame::around(
         points().map(|point| point.seconds.log10()),
         points().map(|point| figure(&point.quality).log10()),
@@ -65,7 +72,7 @@ fn draw(panel: &Area, outcome: &Outcome, (title, figure): Row) -> Result<(), Fai
     draw_axes(panel, &frame, &format!("{}: {title} / white noise", outcome.case.name))?;
     let mut labels = Vec::new();
     let colours = COLOURS.iter().cycle().take(outcome.ours.len()).chain([&PUBLISHED]);
-    for (curve, colour) in curves().zip(colours) {
+    for (curve, colour) in outcome.curves().zip(colours) {
         let line = place(&frame, curve, figure);
         panel.draw(&PathElement::new(line.clone(), colour.stroke_width(2)))?;
         for &at in &line {

@@ -1,7 +1,8 @@
 //! How much sooner ours are at equal error.
 
-use crate::{Curve, Outcome, Point};
 use fsot_lab::judge::Quality;
+
+use crate::outcome::{Curve, Outcome, Point};
 
 /// A figure of merit.
 type Figure = fn(&Quality) -> f64;
@@ -32,18 +33,20 @@ pub fn print(Outcome { case, ours, published }: &Outcome) {
     print!("The published loop, {pace:.1} µs per slice on {} threads", rayon::current_num_threads());
     match case.published_program_us {
         Some(program) => println!(
-            " (the published program: {program} µs on two; at that pace the speed-ups below are {:.2} times as large).",
+            " (the published program: {program} µs on two; at that pace the speed-ups below are {:.2} times as \
+             large).",
             program / pace
         ),
         None => println!("."),
     }
     println!(
-        "It is compared at the errors that it reached; its last was {:.3} filtered, bound {:.3}, bias {:.2}.\n",
+        "It is compared at the errors that it reached; its last was {:.3} filtered, bound {:.3}, \
+         bias {:.2}.\n",
         last.quality.filtered, last.quality.bound, last.quality.bias
     );
     println!(
-        "| published loop: s | filtered | bound | bias | ours | s to its filtered error | speed-up | our bias \
-         | s to its bound | speed-up | our bias |"
+        "| published loop: s | filtered | bound | bias | ours | s to its filtered error | speed-up \
+         | our bias | s to its bound | speed-up | our bias |"
     );
     println!("|---|---|---|---|---|---|---|---|---|---|---|");
     let skipped = published.points.len().saturating_sub(CHECKPOINTS);

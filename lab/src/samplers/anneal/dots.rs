@@ -1,12 +1,13 @@
 //! Energies that are inner products of vectors, `Σ w(p − q) v_p · v_q`: the least is where neighbours cancel.
 //!
-//! The weighted sum of the neighbours' vectors is kept for every movable site, so a proposed swap costs one pass over
-//! the vectors and an accepted one updates the sums around.
+//! The weighted sum of the neighbours' vectors is kept for every movable site, so a proposed swap costs one
+//! pass over the vectors and an accepted one updates the sums around.
 
+use fsot::simd::{LANES, sum};
 use pulp::{Arch, NullaryFnOnce};
 
-use super::neighbours::Neighbours;
-use super::{LANES, Model, Patch, Work, sum};
+use super::neighbours::{InFrame, Neighbours};
+use super::{Model, Patch, Work};
 
 /// Vectors, and the weights between sites.
 pub(in crate::samplers) struct Dots<'a> {
@@ -15,7 +16,7 @@ pub(in crate::samplers) struct Dots<'a> {
     vectors: &'a [f32],
     components: usize,
     neighbours: &'a Neighbours,
-    in_frame: Vec<f32>,
+    in_frame: InFrame,
 }
 
 impl<'a> Dots<'a> {
@@ -49,13 +50,10 @@ impl NullaryFnOnce for Swaps<'_> {
         let Self { model, patch, mut work } = self;
         let Dots { vectors, components, .. } = *model;
         let vector = |id: u32| &vectors[id as usize * components..][..components];
-        let size = patch.tall() * patch.stride;
         let offsets: Vec<Vec<(isize, f32)>> = (0..patch.frames)
             .map(|frame| {
                 let offset = |&(dt, dy, dx, weight): &(i32, i32, i32, f32)| {
-                    let other = (frame as i32 + dt).rem_euclid(patch.frames as i32) as isize;
-                    let rows = dy as isize * patch.stride as isize + dx as isize;
-                    ((other - frame as isize) * size as isize + rows, weight)
+                    (patch.step(frame, [dt, dy], dx as isize), weight)
                 };
                 model.neighbours.taps.iter().map(offset).collect()
             })
@@ -72,16 +70,13 @@ impl NullaryFnOnce for Swaps<'_> {
                 }
             }
         }
-        let [ry, rx] = model.neighbours.reach;
         for _ in 0..work.proposals {
             let (frame, [a, b]) = work.pair(patch);
             let [p, q] = [a, b].map(|[row, column]| patch.at(frame, row, column));
             if p == q {
                 continue;
             }
-            let (dy, dx) = (b[0] + ry, b[1] + rx);
-            let near = dy >= a[0] && dy - a[0] <= 2 * ry && dx >= a[1] && dx - a[1] <= 2 * rx;
-            let weight = if near { model.in_frame[(dy - a[0]) * (2 * rx + 1) + dx - a[1]] } else { 0.0 };
+            let weight = model.in_frame.weight(a, b);
             let [at_p, at_q] = [p, q].map(|at| vector(patch.ids[at]));
             let [around_p, around_q] = [p, q].map(|at| &around[at * components..][..components]);
             // (v_q − v_p) · (B_p − B_q) − w ‖v_q − v_p‖², over ordered pairs.

@@ -1,12 +1,14 @@
 //! Simulated annealing over swaps: which value stands at which site.
 //!
-//! The compared samplers that are tables (Georgiev and Fajardo 2016, Wolfe et al. 2022, Donnelly et al. 2024, Heitz et
-//! al. 2019) all fix a set of values and look for the arrangement with the least energy `Σ w(p − q) E(v_p, v_q)`. Here
-//! is what they share: the acceptance rule, the cooling, and regions that are annealed side by side.
+//! The compared samplers that are tables (Georgiev and Fajardo 2016, Wolfe et al. 2022, Donnelly et al. 2024,
+//! Heitz et al. 2019) all fix a set of values and look for the arrangement with the least energy
+//! `Σ w(p − q) E(v_p, v_q)`. Here is what they share: the acceptance rule, the cooling, and regions that are
+//! annealed side by side.
 //!
-//! A round places disjoint regions at a random offset, farther apart than the energy reaches. Each is copied with
-//! its surroundings into a [`Patch`], annealed there, and copied back: no region sees another at work, so the result
-//! depends on the seed alone and not on the number of threads. Values only move within their frame.
+//! A round places disjoint regions at a random offset, farther apart than the energy reaches. Each is copied
+//! with its surroundings into a [`Patch`], annealed there, and copied back: no region sees another at work,
+//! so the result depends on the seed alone and not on the number of threads. Values only move within their
+//! frame.
 
 mod dots;
 mod neighbours;
@@ -18,13 +20,15 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
 
 pub(super) use dots::Dots;
-pub(super) use neighbours::{Neighbours, autocorrelation};
+pub(super) use neighbours::Neighbours;
 pub(super) use pairs::{Law, Pairs};
+
+use fsot::Extent;
+use fsot::config::RangeError;
+use fsot::simd::LANES;
 
 use crate::random::{self, Purpose};
 use crate::samplers::SamplerError;
-use fsot::Extent;
-use fsot::config::RangeError;
 
 /// Exponential cooling: the temperature `c_k` falls from `start` to `end` by equal factors.
 ///
@@ -62,7 +66,8 @@ impl Cooling {
     }
 }
 
-/// A region of every frame with its surroundings, in memory of its own. Rows are padded to `stride`.
+/// A region of every frame with its surroundings, in memory of its own. Rows are padded to `stride`, so that
+/// a vector of neighbours that begins in one ends in it.
 #[derive(Clone, Debug)]
 pub(super) struct Patch {
     pub frames: usize,
@@ -76,9 +81,6 @@ pub(super) struct Patch {
     /// Which value stands at `[frame][row][column]`, surroundings included; padding holds 0.
     pub ids: Vec<u32>,
 }
-
-/// Lanes of the vectors that sum over neighbours; rows of a patch leave room for one more.
-pub(super) const LANES: usize = 16;
 
 impl Patch {
     fn empty(frames: usize, rows: usize, columns: usize, reach: [usize; 2]) -> Self {
@@ -96,6 +98,14 @@ impl Patch {
     /// Rows of a frame, surroundings included.
     pub fn tall(&self) -> usize {
         self.rows + 2 * self.reach[0]
+    }
+
+    /// How far in `ids` from a site of the frame to another, so many frames and rows and columns away. Frames
+    /// wrap.
+    pub fn step(&self, frame: usize, [dt, dy]: [i32; 2], dx: isize) -> isize {
+        let other = (frame as i32 + dt).rem_euclid(self.frames as i32) as isize;
+        let rows = (other - frame as isize) * self.tall() as isize + dy as isize;
+        rows * self.stride as isize + dx
     }
 
     /// Calls `each(index in ids, site of the table)` for the movable sites, or for all.
@@ -225,8 +235,8 @@ pub(super) fn nets(extent: &Extent, dims: usize, seed: u64) -> Vec<f32> {
     values
 }
 
-/// `e^x` for `x ≤ 0` to 3e-7 relative, from additions and multiplications only: vectors of it need no library, and it
-/// has the same bits everywhere.
+/// `e^x` for `x ≤ 0` to 3e-7 relative, from additions and multiplications only: vectors of it need no
+/// library, and it has the same bits everywhere.
 #[inline(always)]
 pub(super) fn exp(x: f32) -> f32 {
     // Adding 1.5 · 2²³ rounds to the nearest integer and leaves it in the low bits.
@@ -240,17 +250,6 @@ pub(super) fn exp(x: f32) -> f32 {
     let series = 1.0
         + f * (1.0 + f * (0.5 + f * (1.0 / 6.0 + f * (1.0 / 24.0 + f * (1.0 / 120.0 + f * (1.0 / 720.0))))));
     power * series
-}
-
-/// Sum over lanes in a fixed order, the same on every processor.
-#[inline(always)]
-pub(super) fn sum(row: [f32; LANES]) -> f32 {
-    let mut eight = [0.0; 8];
-    for lane in 0..8 {
-        eight[lane] = row[lane] + row[lane + 8];
-    }
-    let four = [eight[0] + eight[4], eight[1] + eight[5], eight[2] + eight[6], eight[3] + eight[7]];
-    (four[0] + four[2]) + (four[1] + four[3])
 }
 
 #[cfg(test)]

@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use super::LANES;
-use crate::samplers::SamplerError;
 use fsot::Extent;
-use fsot::kernel::{Kernel, Tap};
+use fsot::kernel::{Kernel, Tap, autocorrelation};
+use fsot::simd::{LANES, Row};
+
+use crate::samplers::SamplerError;
 
 /// Weights of the neighbours of a site on a lattice that wraps: symmetric, without the site itself.
 #[derive(Clone, Debug)]
@@ -17,11 +18,21 @@ pub(in crate::samplers) struct Neighbours {
 }
 
 /// Weights `(dt, dy, dx)` of a torus, offsets in `(-len / 2, len / 2]`.
-pub(in crate::samplers) type Weights = BTreeMap<(i32, i32, i32), f64>;
+type Weights = BTreeMap<(i32, i32, i32), f64>;
+
+/// Weights of neighbours: all but that of the site itself.
+fn others(weights: &Weights) -> impl Iterator<Item = (&(i32, i32, i32), &f64)> {
+    weights.iter().filter(|(offset, _)| **offset != (0, 0, 0))
+}
+
+/// The largest weight of a neighbour.
+fn largest(weights: &Weights) -> f64 {
+    others(weights).map(|(_, &weight)| weight).fold(0.0, f64::max)
+}
 
 impl Neighbours {
-    /// The sum of the taps of kernels, each relative to its own largest, down to their truncations. Temporal parts
-    /// count both ways.
+    /// The sum of the taps of kernels, each relative to its own largest, down to their truncations. Temporal
+    /// parts count both ways.
     pub fn of_kernels(kernels: &[Kernel], extent: &Extent) -> Result<Self, SamplerError> {
         let mut weights = Weights::new();
         for kernel in kernels {
@@ -36,12 +47,31 @@ impl Neighbours {
         Ok(Self::new(&weights, extent, 0.0))
     }
 
+    /// `Σ_k (f_k ⋆ f_k)`, the autocorrelations of kernels whose weights are scaled to sum to 1, relative to
+    /// the largest weight of a neighbour and without those below this share of it.
+    pub fn of_autocorrelations(
+        kernels: &[Kernel],
+        extent: &Extent,
+        truncation: f64,
+    ) -> Result<Self, SamplerError> {
+        let mut weights = Weights::new();
+        for kernel in kernels {
+            let taps = kernel.taps(extent)?;
+            let sum: f64 = taps.iter().map(|tap| tap.weight).sum();
+            for Tap { dt, dy, dx, weight } in autocorrelation(&taps, extent, 0.0) {
+                *weights.entry((dt, dy, dx)).or_default() += weight / (sum * sum);
+            }
+        }
+        let largest = largest(&weights).max(f64::MIN_POSITIVE);
+        weights.values_mut().for_each(|weight| *weight /= largest);
+        Ok(Self::new(&weights, extent, truncation))
+    }
+
     /// From weights, without those below this share of the largest.
-    pub fn new(weights: &Weights, extent: &Extent, truncation: f64) -> Self {
-        let others = || weights.iter().filter(|(offset, _)| **offset != (0, 0, 0));
-        let largest = others().map(|(_, &weight)| weight).fold(0.0, f64::max);
+    fn new(weights: &Weights, extent: &Extent, truncation: f64) -> Self {
+        let least = truncation * largest(weights);
         let mut taps = Vec::new();
-        for (&(dt, dy, dx), &weight) in others().filter(|(_, weight)| **weight > truncation * largest) {
+        for (&(dt, dy, dx), &weight) in others(weights).filter(|(_, weight)| **weight > least) {
             let ways = |d: i32, len: usize| if 2 * d == len as i32 { vec![d, -d] } else { vec![d] };
             let (down, across) = (ways(dy, extent.height), ways(dx, extent.width));
             let share = weight / (down.len() * across.len()) as f64;
@@ -56,19 +86,19 @@ impl Neighbours {
         Self { taps, reach }
     }
 
-    /// Weights between sites of one frame, `[dy + reach][dx + reach]`.
-    pub fn in_frame(&self) -> Vec<f32> {
+    /// Weights between sites of one frame.
+    pub fn in_frame(&self) -> InFrame {
         let [ry, rx] = self.reach;
         let mut weights = vec![0.0; (2 * ry + 1) * (2 * rx + 1)];
         for &(_, dy, dx, weight) in self.taps.iter().filter(|tap| tap.0 == 0) {
             weights[(dy + ry as i32) as usize * (2 * rx + 1) + (dx + rx as i32) as usize] += weight;
         }
-        weights
+        InFrame { reach: self.reach, weights }
     }
 
     /// The same taps as rows of lanes.
     pub fn runs(&self) -> Vec<Run> {
-        let mut runs: BTreeMap<(i32, i32, usize), [f32; LANES]> = BTreeMap::new();
+        let mut runs: BTreeMap<(i32, i32, usize), Row> = BTreeMap::new();
         for &(dt, dy, dx, weight) in &self.taps {
             let column = (dx + self.reach[1] as i32) as usize;
             runs.entry((dt, dy, column / LANES)).or_default()[column % LANES] += weight;
@@ -86,44 +116,24 @@ pub(in crate::samplers) struct Run {
     pub dy: i32,
     /// Column of the first lane.
     pub dx: isize,
-    pub weights: [f32; LANES],
+    pub weights: Row,
 }
 
-impl Run {
-    /// Where the first lane stands, from the site, in a patch of so many frames of `size` with rows of `stride`.
-    pub fn offset(&self, frame: usize, frames: usize, size: usize, stride: usize) -> isize {
-        let other = (frame as i32 + self.dt).rem_euclid(frames as i32) as isize;
-        (other - frame as isize) * size as isize + self.dy as isize * stride as isize + self.dx
-    }
+/// Weights between sites of one frame, by their offset.
+#[derive(Clone, Debug)]
+pub(in crate::samplers) struct InFrame {
+    reach: [usize; 2],
+    /// `[dy + reach][dx + reach]`.
+    weights: Vec<f32>,
 }
 
-/// `Σ_k (f_k ⋆ f_k)`, the autocorrelations of kernels whose weights are scaled to sum to 1, on the torus; then scaled
-/// so that the largest weight of a neighbour is 1.
-pub(in crate::samplers) fn autocorrelation(
-    kernels: &[Kernel],
-    extent: &Extent,
-) -> Result<Weights, SamplerError> {
-    let centred = |d: i32, len: usize| {
-        let wrapped = d.rem_euclid(len as i32);
-        if 2 * wrapped > len as i32 { wrapped - len as i32 } else { wrapped }
-    };
-    let mut weights = Weights::new();
-    for kernel in kernels {
-        let taps = kernel.taps(extent)?;
-        let sum: f64 = taps.iter().map(|tap| tap.weight).sum();
-        for a in &taps {
-            for b in &taps {
-                let offset = (
-                    centred(a.dt - b.dt, extent.frames),
-                    centred(a.dy - b.dy, extent.height),
-                    centred(a.dx - b.dx, extent.width),
-                );
-                *weights.entry(offset).or_default() += a.weight * b.weight / (sum * sum);
-            }
-        }
+impl InFrame {
+    /// The weight between two places `[row, column]`; 0 if they do not see each other.
+    #[inline(always)]
+    pub fn weight(&self, a: [usize; 2], b: [usize; 2]) -> f32 {
+        let [ry, rx] = self.reach;
+        let (dy, dx) = (b[0] + ry, b[1] + rx);
+        let near = dy >= a[0] && dy - a[0] <= 2 * ry && dx >= a[1] && dx - a[1] <= 2 * rx;
+        if near { self.weights[(dy - a[0]) * (2 * rx + 1) + dx - a[1]] } else { 0.0 }
     }
-    let others = weights.iter().filter(|(offset, _)| **offset != (0, 0, 0));
-    let largest = others.map(|(_, &weight)| weight).fold(f64::MIN_POSITIVE, f64::max);
-    weights.values_mut().for_each(|weight| *weight /= largest);
-    Ok(weights)
 }

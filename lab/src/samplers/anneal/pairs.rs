@@ -1,12 +1,14 @@
 //! Energies that depend on the distance of two values, `Σ w(p − q) E(‖v_p − v_q‖)`.
 //!
-//! The energy of every movable site with its own value is kept, so a proposed swap costs two passes over neighbours,
-//! sixteen at a time, and an accepted one four more. Plain arrays; the compiler makes them vectors.
+//! The energy of every movable site with its own value is kept, so a proposed swap costs two passes over
+//! neighbours, sixteen at a time, and an accepted one four more. Plain arrays; the compiler makes them
+//! vectors.
 
+use fsot::simd::{LANES, Row, sum};
 use pulp::{Arch, NullaryFnOnce};
 
-use super::neighbours::{Neighbours, Run};
-use super::{LANES, Model, Patch, Work, exp, sum};
+use super::neighbours::{InFrame, Neighbours, Run};
+use super::{Model, Patch, Work, exp};
 
 /// The energy of two values at distance `d`.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +31,7 @@ pub(in crate::samplers) struct Pairs<'a> {
     law: Law,
     reach: [usize; 2],
     runs: Vec<Run>,
-    in_frame: Vec<f32>,
+    in_frame: InFrame,
 }
 
 impl<'a> Pairs<'a> {
@@ -147,15 +149,14 @@ impl<E: Energy, const D: usize> NullaryFnOnce for Swaps<'_, E, D> {
     fn call(self) {
         let Self { model, law, patch, mut work } = self;
         let dims = if D == 0 { model.dims } else { D };
-        let size = patch.tall() * patch.stride;
         let mut field = Field::<E, D> { law, dims, planes: Vec::new() };
         for dim in 0..dims {
             field.planes.push(patch.ids.iter().map(|&id| model.values[id as usize * dims + dim]).collect());
         }
-        let runs: Vec<Vec<(isize, [f32; LANES])>> = (0..patch.frames)
+        let runs: Vec<Vec<(isize, Row)>> = (0..patch.frames)
             .map(|frame| {
-                let offset = |run: &Run| run.offset(frame, patch.frames, size, patch.stride);
-                model.runs.iter().map(|run| (offset(run), run.weights)).collect()
+                let step = |run: &Run| patch.step(frame, [run.dt, run.dy], run.dx);
+                model.runs.iter().map(|run| (step(run), run.weights)).collect()
             })
             .collect();
         let mut own = vec![0.0; patch.ids.len()];
@@ -168,7 +169,6 @@ impl<E: Energy, const D: usize> NullaryFnOnce for Swaps<'_, E, D> {
             }
         }
         let [alone] = law.of([0.0]);
-        let [ry, rx] = model.reach;
         for _ in 0..work.proposals {
             let (frame, [a, b]) = work.pair(patch);
             let [p, q] = [a, b].map(|[row, column]| patch.at(frame, row, column));
@@ -177,10 +177,8 @@ impl<E: Energy, const D: usize> NullaryFnOnce for Swaps<'_, E, D> {
             }
             let runs = &runs[frame];
             // What the swap does to the energy of ordered pairs; the pair itself keeps its energy.
-            let (dy, dx) = (b[0] + ry, b[1] + rx);
-            let near = dy >= a[0] && dy - a[0] <= 2 * ry && dx >= a[1] && dx - a[1] <= 2 * rx;
-            let mutual = if near {
-                let weight = model.in_frame[(dy - a[0]) * (2 * rx + 1) + dx - a[1]];
+            let weight = model.in_frame.weight(a, b);
+            let mutual = if weight > 0.0 {
                 let [apart] = law.of([field.square(p, q)]);
                 2.0 * weight * (apart - alone)
             } else {
@@ -223,7 +221,7 @@ impl<E: Energy, const D: usize> Field<E, D> {
 
     /// Squared distances of sixteen values in a row to the value at `of`.
     #[inline(always)]
-    fn squares(&self, first: usize, of: usize) -> [f32; LANES] {
+    fn squares(&self, first: usize, of: usize) -> Row {
         let mut squares = [0.0; LANES];
         for plane in &self.planes[..self.dims()] {
             let value = plane[of];
@@ -238,7 +236,7 @@ impl<E: Energy, const D: usize> Field<E, D> {
 
     /// Energy of the value at `of`, put at `at`.
     #[inline(always)]
-    fn energy(&self, runs: &[(isize, [f32; LANES])], at: usize, of: usize) -> f32 {
+    fn energy(&self, runs: &[(isize, Row)], at: usize, of: usize) -> f32 {
         let mut total = [0.0; LANES];
         for (offset, weights) in runs {
             let energies = self.law.of(self.squares(at.wrapping_add_signed(*offset), of));
@@ -251,7 +249,7 @@ impl<E: Energy, const D: usize> Field<E, D> {
 
     /// Updates the neighbours' own energies for the value at `from` being put at `at`.
     #[inline(always)]
-    fn replace(&self, runs: &[(isize, [f32; LANES])], at: usize, from: usize, own: &mut [f32]) {
+    fn replace(&self, runs: &[(isize, Row)], at: usize, from: usize, own: &mut [f32]) {
         for (offset, weights) in runs {
             let first = at.wrapping_add_signed(*offset);
             let before = self.law.of(self.squares(first, at));

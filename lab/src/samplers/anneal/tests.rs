@@ -1,10 +1,10 @@
 //! The fast local changes against energies written as the papers write them.
 
+use fsot::kernel::{Kernel, SpatialKernel, TemporalKernel};
 use rand::SeedableRng;
 
 use super::*;
 use crate::samplers::Fast;
-use fsot::kernel::{Kernel, SpatialKernel, TemporalKernel};
 
 const EXTENT: Extent = Extent { frames: 3, height: 18, width: 20, spp: 1 };
 
@@ -16,7 +16,8 @@ fn weight(p: usize, q: usize) -> f64 {
     let in_space = (-(dy * dy + dx * dx) / (2.1 * 2.1)).exp();
     match (dt == 0.0, dy == 0.0 && dx == 0.0) {
         (true, _) if in_space >= 1e-3 => in_space,
-        // The Gaussian in time wraps around three frames, images at 1, 2, 4, 5, … frames; relative to its largest weight.
+        // The Gaussian in time wraps around three frames, images at 1, 2, 4, 5, … frames; relative to its
+        // largest weight.
         (false, true) => {
             let image = |k: i32| (-f64::from(k * k) / 2.25).exp();
             let largest: f64 = (0..12).filter(|k| k % 3 == 0).map(image).sum();
