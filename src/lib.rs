@@ -23,20 +23,22 @@
 //! # Three types
 //!
 //! * [`Config`] is plain data: everything that determines a table but for the length of the run. Its `with_…`
-//!   methods change one thing at a time; [`config`], [`kernel`], [`classes`] and [`targets`] hold what it is made of.
+//!   methods change one thing at a time; [`config`], [`kernel`], [`classes`] and [`targets`] hold what it is
+//!   made of.
 //! * [`Optimizer`] is a table on its way: [`run`](Optimizer::run) or, with a closure that watches,
-//!   [`run_observed`](Optimizer::run_observed); single steps; the [metadata](Optimizer::metadata) of what came of it.
+//!   [`run_observed`](Optimizer::run_observed); single steps; the [metadata](Optimizer::metadata) of what
+//!   came of it.
 //! * [`SampleTable`] is what renderers read: samples by [`Site`], views, files.
 //!
-//! [`metrics`] says what a table or a list of points is worth; [`Objective`] hands value and gradient to optimisers
-//! of your own; [`method`] has the mathematics.
+//! [`metrics`] says what a table or a list of points is worth; [`Objective`] hands value and gradient to
+//! optimisers of your own; [`method`] has the mathematics.
 //!
 //! # Which run
 //!
 //! | [`Until`] | for |
 //! |---|---|
-//! | [`Seconds`](Until::Seconds) | the best table in a given time; [`RunReport::work`] makes the same one anywhere |
-//! | [`Sweeps`](Until::Sweeps) | tables on intervals: soonest at any filtered error. 20 to 100 are a good table |
+//! | [`Seconds`](Until::Seconds) | the best table in a given time; [`RunReport::work`] makes it again |
+//! | [`Sweeps`](Until::Sweeps) | tables on intervals: soonest at any error; 20 to 100 make a good one |
 //! | [`SlicesPerClass`](Until::SlicesPerClass) | point sets, toruses, and whatever has no closed form |
 //! | [`Work`](Until::Work) | slices, then sweeps: the lowest bound |
 //! | [`Converged`](Until::Converged) | slices, until they bring little more |
@@ -51,8 +53,8 @@
 //!
 //! # Features
 //!
-//! * `image` (default): densities from PNG and EXR files. Without it `targets::Picture` is absent, and the crates
-//!   `png` and `exr`.
+//! * `image` (default): densities from PNG and EXR files. Without it `targets::Picture` is absent, and the
+//!   crates `png` and `exr`.
 //!
 //! # What it promises
 //!
@@ -100,7 +102,7 @@ pub mod objective;
 pub mod optimizer;
 pub mod random;
 #[doc(hidden)]
-pub mod simd;
+mod simd;
 mod slices;
 mod sweeps;
 mod table;

@@ -1,14 +1,14 @@
 //! Slices that ride in the lanes of one vector.
 
 /// Slices that travel together.
-pub const LANES: usize = 16;
+pub(crate) const LANES: usize = 16;
 
 /// One number per lane.
-pub type Row = [f32; LANES];
+pub(crate) type Row = [f32; LANES];
 
 /// Sum over lanes in a fixed order, the same on every processor.
 #[inline(always)]
-pub fn sum(row: Row) -> f32 {
+pub(crate) fn sum(row: Row) -> f32 {
     let mut eight = [0.0; 8];
     for lane in 0..8 {
         eight[lane] = row[lane] + row[lane + 8];

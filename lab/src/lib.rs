@@ -9,3 +9,4 @@ pub mod published;
 mod random;
 pub mod render;
 pub mod samplers;
+mod simd;

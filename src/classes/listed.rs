@@ -31,7 +31,8 @@ pub struct LabelSet {
 /// use fsot::classes::{Classes, Ramp};
 ///
 /// let coordinates: Vec<f64> = (0..9).map(|sample| f64::from(sample) / 8.0).collect();
-/// let classes = Classes::Ramps { coordinates: coordinates.into(), ramps: vec![Ramp::Rising, Ramp::Falling] };
+/// let ramps = vec![Ramp::Rising, Ramp::Falling];
+/// let classes = Classes::Ramps { coordinates: coordinates.into(), ramps };
 /// # let _ = classes;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -33,7 +33,8 @@ pub enum PrefixOf {
 /// use fsot::classes::PrefixLengths;
 /// use fsot::{Config, Until};
 ///
-/// let sequence = Config::progressive(64, 2, PrefixLengths::PowersOfTwo).optimize(Until::SlicesPerClass(256))?;
+/// let config = Config::progressive(64, 2, PrefixLengths::PowersOfTwo);
+/// let sequence = config.optimize(Until::SlicesPerClass(256))?;
 /// assert_eq!(sequence.values().len(), 2 * 64);
 /// # Ok::<(), fsot::ConfigError>(())
 /// ```

@@ -15,7 +15,8 @@ use crate::targets::{Density, Inks, Target};
 /// use fsot::{Config, Until};
 ///
 /// // 32 points labelled 0 and 16 labelled 1; each label and both together are uniform.
-/// let points = Config::classes(&[32, 16], 2, &LabelSubsets::EachAndAll).optimize(Until::SlicesPerClass(256))?;
+/// let config = Config::classes(&[32, 16], 2, &LabelSubsets::EachAndAll);
+/// let points = config.optimize(Until::SlicesPerClass(256))?;
 /// assert_eq!(points.values().len(), 2 * 48);
 /// # Ok::<(), fsot::ConfigError>(())
 /// ```

@@ -3,7 +3,7 @@
 //! The weighted sum of the neighbours' vectors is kept for every movable site, so a proposed swap costs one
 //! pass over the vectors and an accepted one updates the sums around.
 
-use fsot::simd::{LANES, sum};
+use crate::simd::{LANES, sum};
 use pulp::{Arch, NullaryFnOnce};
 
 use super::neighbours::{InFrame, Neighbours};

@@ -23,9 +23,9 @@ pub(super) use dots::Dots;
 pub(super) use neighbours::Neighbours;
 pub(super) use pairs::{Law, Pairs};
 
+use crate::simd::LANES;
 use fsot::Extent;
 use fsot::config::RangeError;
-use fsot::simd::LANES;
 
 use crate::random::{self, Purpose};
 use crate::samplers::SamplerError;

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use crate::simd::{LANES, Row};
 use fsot::Extent;
 use fsot::kernel::{Kernel, Tap, autocorrelation};
-use fsot::simd::{LANES, Row};
 
 use crate::samplers::SamplerError;
 

@@ -4,7 +4,7 @@
 //! neighbours, sixteen at a time, and an accepted one four more. Plain arrays; the compiler makes them
 //! vectors.
 
-use fsot::simd::{LANES, Row, sum};
+use crate::simd::{LANES, Row, sum};
 use pulp::{Arch, NullaryFnOnce};
 
 use super::neighbours::{InFrame, Neighbours, Run};
