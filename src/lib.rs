@@ -9,8 +9,10 @@
 //! ```
 //! use fsot::{Config, Extent, Kernel, Site, Until};
 //!
-//! let config = Config::new(Extent::still(64, 64), 2).with_kernel(Kernel::gaussian(2.1)).with_seed(7);
-//! let table = config.optimize(Until::Sweeps(20))?;
+//! let table = Config::new(Extent::still(64, 64), 2)
+//!     .with_kernel(Kernel::gaussian(2.1))
+//!     .with_seed(7)
+//!     .optimize(Until::Sweeps(20))?;
 //! let random_numbers = table.sample(Site { frame: 0, y: 5, x: 7 }, 0);
 //! assert!(random_numbers.iter().all(|number| (0.0..1.0).contains(number)));
 //! # Ok::<(), fsot::ConfigError>(())
@@ -105,10 +107,14 @@ mod table;
 pub mod targets;
 mod transport;
 
+#[doc(inline)]
 pub use config::{Config, Until};
 pub use error::ConfigError;
+#[doc(inline)]
 pub use kernel::Kernel;
+#[doc(inline)]
 pub use objective::Objective;
+#[doc(inline)]
 pub use optimizer::{Optimizer, RunReport};
 pub use table::SampleTable;
 pub use table::extent::{Extent, Site};

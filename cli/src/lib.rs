@@ -1,45 +1,135 @@
 //! The command `fsot`, as a library: what its verbs do, and what other programs of the project share with it.
+//!
+//! | verb | makes |
+//! |---|---|
+//! | [`table`] | a sample table, and its metadata |
+//! | [`inspect`] | figures and a page of pictures of a table |
+//! | [`points`] | point sets: labelled classes, progressive sequences, stipplings |
+//!
+//! # Exit codes
+//!
+//! | code | meaning |
+//! |---|---|
+//! | 0 | done |
+//! | 1 | refused or failed: nothing is written, or what is written is whole |
+//! | 2 | the command line cannot be understood |
+//! | 3 | SIGINT, SIGTERM or SIGHUP ended the run early; what it had reached is written, and says so |
+//!
+//! A signal before the first step, or during `fsot inspect`, finds nothing to keep and kills the process as
+//! signals do (130, 143 and 129 to a shell). A reader of the output who goes away (`| head -1`) is no
+//! failure.
+//!
+//! # Shared with other programs
+//!
+//! [`interrupt`] for signals, [`output`] for files that are checked before the work, [`progress`] for bars,
+//! [`console`] for what is printed, [`run`] for a run with all of them, [`draw`] for pages, [`temporal`] for
+//! kernels as they are written on a command line.
 
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+pub mod console;
 pub mod draw;
+mod flags;
 pub mod inspect;
+pub mod interrupt;
+pub mod output;
 pub mod points;
+pub mod progress;
+pub mod run;
 pub mod table;
 pub mod temporal;
+
+pub use self::flags::Shared;
 
 /// Whatever went wrong, in one sentence.
 pub type Failure = Box<dyn std::error::Error + Send + Sync>;
 
-/// Filtered sliced optimal transport: sample tables and point sets.
-#[derive(Parser)]
-#[command(name = "fsot", version)]
+/// How a verb ended that has not failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ended {
+    /// All is done.
+    Done,
+    /// A signal came; what was reached is written.
+    Stopped,
+}
+
+impl Ended {
+    /// [`Ended::Stopped`] if a signal has cut something short.
+    pub fn stopped_if(stopped: bool) -> Self {
+        if stopped { Self::Stopped } else { Self::Done }
+    }
+}
+
+impl From<Ended> for ExitCode {
+    fn from(ended: Ended) -> Self {
+        match ended {
+            Ended::Done => ExitCode::SUCCESS,
+            Ended::Stopped => ExitCode::from(3),
+        }
+    }
+}
+
+/// Filtered sliced optimal transport: sample tables whose Monte Carlo error is blue noise, and point sets.
+#[derive(Debug, Parser)]
+#[command(name = "fsot", version, after_help = TOUR)]
 struct Command {
     #[command(subcommand)]
     verb: Verb,
 }
 
-#[derive(Subcommand)]
+#[derive(Debug, Subcommand)]
 enum Verb {
     Table(table::Arguments),
     Inspect(inspect::Arguments),
     Points(points::Arguments),
 }
 
+const TOUR: &str = "\
+A tour:
+  fsot table
+      64 x 64 pixels and 10 frames in a second, to table.npy and table.json
+  fsot inspect table.npy
+      what the table is worth: figures, and table.inspect.png to look at
+  fsot table --frames 1 --spp 4 --dims 4 --seconds 10 --out render.npy
+      a still table for a renderer that takes 4 samples of 4 numbers per pixel
+  fsot points two-class --counts 682,683,683 --every --points classes.csv
+      three sets of points; each of them, and all their unions, are uniform
+  fsot points stipple --picture face.png --count 20000 --out dots.png
+      a picture in dots
+  fsot table --json --quiet
+      one line of JSON for a script, and no progress bar; so does every verb
+'fsot VERB --help' says more about each.
+
+Exit codes:
+  0  done
+  1  refused or failed; nothing is written, or what is written is whole
+  2  the command line cannot be understood
+  3  a signal (Ctrl-C, SIGTERM, SIGHUP) ended the run early; what it had reached is written, and says so";
+
 /// Runs the command with the arguments of this process.
 pub fn main() -> ExitCode {
-    let done = match Command::parse().verb {
+    let ended = match Command::parse().verb {
         Verb::Table(arguments) => table::run(&arguments),
         Verb::Inspect(arguments) => inspect::run(&arguments),
         Verb::Points(arguments) => points::run(&arguments),
     };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
+    match ended {
+        Ok(ended) => ended.into(),
         Err(error) => {
-            eprintln!("error: {error}");
+            console::complain(&*error);
             ExitCode::FAILURE
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_sound() {
+        <Command as clap::CommandFactory>::command().debug_assert();
     }
 }

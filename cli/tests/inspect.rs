@@ -86,8 +86,8 @@ fn white_noise_is_called_white_noise() {
         let (before, _) = line.split_once('±').unwrap();
         before.split_whitespace().last().unwrap().parse().unwrap()
     };
-    // 512 samples vary by 1 / sqrt(512) = 4 % before the filter; after it, of which some 40 independent blurs fit
-    // into the table, by 20 %. Integrands add their 2 %. Four deviations.
+    // 512 samples vary by 1 / sqrt(512) = 4 % before the filter; after it, of which some 40 independent blurs
+    // fit into the table, by 20 %. Integrands add their 2 %. Four deviations.
     assert!((mean("error, not filtered") - 1.0).abs() < 0.2, "{text}");
     assert!((mean("in space and time") - 1.0).abs() < 0.8, "{text}");
     assert!(text.contains("exp(-r^2/1.5^2) in pixels, box:2 in frames"), "{text}");
@@ -130,8 +130,8 @@ fn bad_input_is_one_sentence() {
     }
     refusal(&[path, "--temporal", "box:0"], &["box"]);
     refusal(&[path, "--out", &inside("nowhere/page.png")], &["nowhere", "--out"]);
-    refusal(&[path, "--out", home.path().to_str().unwrap()], &["folder"]);
-    refusal(&[path, "--out", path], &["overwrite", "--out"]);
+    refusal(&[path, "--out", home.path().to_str().unwrap()], &[".png"]);
+    refusal(&[path, "--out", path], &[".png", "--out"]);
     assert_eq!(fs::read(path).unwrap(), whole);
     // What the command line itself refuses: several lines with a hint, code 2.
     for arguments in [&[path, "--temporal", "sometimes"][..], &[path, "--integrands", "0"], &[]] {

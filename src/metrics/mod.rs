@@ -14,10 +14,12 @@
 //! | what is the objective worth, with exact distances? | [`Bound`] |
 //! | does the table as a whole, a frame, a pixel estimate integrals too high or too low? | [`Bias`] |
 //! | are the samples spread evenly over the square? | [`Histogram`], [`Discrepancy`] |
+//! | … and every single coordinate, up to its faces? | [`Marginal`] |
 //! | what is the error of a prefix, of a class, of a point set? | [`SetError`] |
 //! | do points follow a picture? | [`DensityMatch`] |
 //! | how far is a point set from its target? | [`SlicedDistance`] |
 //! | at which frequencies is the error? | [`Spectra`] |
+//! | does the error prefer a direction of the picture? | [`Spectra::anisotropy`] |
 //! | what is the error of each pixel, for one integrand? | [`ErrorImage`] |
 //!
 //! All but the bound measure one *dimension group* `dims`: the list of dimensions that a renderer uses
@@ -52,6 +54,7 @@ mod histogram;
 mod integrand;
 mod integrand_kind;
 mod integrands;
+mod marginal;
 mod ratios;
 mod samples;
 mod set_error;
@@ -69,8 +72,9 @@ pub use filtered_error::FilteredError;
 pub use histogram::Histogram;
 pub use integrand::Integrand;
 pub use integrands::{Family, Integrands};
+pub use marginal::{FaceDensity, Marginal};
 pub use ratios::{Estimate, FamilyRatio, Ratios};
 pub use samples::{Samples, Values};
 pub use set_error::SetError;
 pub use sliced_distance::SlicedDistance;
-pub use spectra::{RadialBin, Spectra};
+pub use spectra::{AnisotropyRing, RadialBin, Spectra};

@@ -60,6 +60,28 @@ pub struct RadialBin {
     pub count: usize,
 }
 
+/// How much more power a ring of frequencies has along y than along x.
+///
+/// ```
+/// use fsot::metrics::Spectra;
+///
+/// // Rows that differ: all power is along y.
+/// let rows = ndarray::Array3::from_shape_fn((1, 16, 16), |(_, y, _)| if y % 4 < 2 { 0.5 } else { -0.5 });
+/// let ring = Spectra::of_image(rows.view(), 0.25).anisotropy()[1];
+/// assert_eq!((ring.from, ring.to), (0.25, 0.35));
+/// assert!(ring.along_y_over_along_x > 1e6);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AnisotropyRing {
+    /// Least radius of the ring, in cycles per pixel.
+    pub from: f64,
+    /// Greatest radius, exclusive.
+    pub to: f64,
+    /// Mean power of frequencies within 15° of the y axis over that within 15° of the x axis: 1 where no
+    /// direction is preferred. NaN where the tile has no such frequencies.
+    pub along_y_over_along_x: f64,
+}
+
 /// Integrands are summed in this many parts, whatever the number of threads; each holds its own sums.
 const PARTS: usize = 8;
 
@@ -153,14 +175,37 @@ impl Spectra {
         sum / count
     }
 
+    /// Power along y over power along x, in three rings of `xy` from 0.15 to 0.5 cycles per pixel.
+    ///
+    /// A radial average cannot see a direction, and the error of a whole table neither.
+    pub fn anisotropy(&self) -> [AnisotropyRing; 3] {
+        let slope = (std::f64::consts::PI / 12.0).tan();
+        [(0.15, 0.25), (0.25, 0.35), (0.35, 0.5)].map(|(from, to)| {
+            let mean = |is_along: &dyn Fn(f64, f64) -> bool| {
+                let ring = self
+                    .plane_frequencies()
+                    .filter(|&([y, x], _)| (from..to).contains(&y.hypot(x)) && is_along(y.abs(), x.abs()));
+                let (sum, count) =
+                    ring.fold((0.0, 0.0), |(sum, count), (_, power)| (sum + power, count + 1.0));
+                sum / count
+            };
+            let along_y_over_along_x = mean(&|y, x| x <= slope * y) / mean(&|y, x| y <= slope * x);
+            AnisotropyRing { from, to, along_y_over_along_x }
+        })
+    }
+
     /// Radius in cycles per pixel and power of every frequency of `xy` but zero.
     fn frequencies(&self) -> impl Iterator<Item = (f64, f64)> {
+        let radii = self.plane_frequencies().map(|([y, x], power)| (y.hypot(x), power));
+        radii.filter(|&(radius, _)| radius > 0.0)
+    }
+
+    /// `[y, x]` in cycles per pixel and power of every frequency of `xy`.
+    fn plane_frequencies(&self) -> impl Iterator<Item = ([f64; 2], f64)> {
         let (height, width) = self.xy.dim();
         let cycles = |at: usize, len: usize| (at as f64 - (len / 2) as f64) / len as f64;
-        self.xy
-            .indexed_iter()
-            .map(move |((row, column), &power)| (cycles(row, height).hypot(cycles(column, width)), power))
-            .filter(|&(radius, _)| radius > 0.0)
+        let place = move |row, column| [cycles(row, height), cycles(column, width)];
+        self.xy.indexed_iter().map(move |((row, column), &power)| (place(row, column), power))
     }
 }
 

@@ -16,6 +16,7 @@ const INK: u8 = 235;
 const PAPER: u8 = 24;
 
 /// The page.
+#[derive(Clone, Debug)]
 pub struct Canvas {
     picture: Grey,
 }

@@ -3,6 +3,7 @@
 use super::raster::Color;
 
 /// The page; inks on it multiply, as on paper.
+#[derive(Clone, Debug)]
 pub struct Page {
     /// What is on it so far.
     pub picture: Color,

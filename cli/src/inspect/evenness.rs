@@ -17,7 +17,8 @@ pub struct Evenness {
 }
 
 impl Evenness {
-    /// Counts the samples of one or two dimensions in as many cells as keep 8 samples each, at most 32 per side.
+    /// Counts the samples of one or two dimensions in as many cells as keep 8 samples each, at most 32 per
+    /// side.
     pub fn new(table: &SampleTable, dims: &[usize]) -> Result<Self, MeasureError> {
         let samples = table.extent().samples();
         let cells = |per_side: usize| per_side.pow(dims.len() as u32);

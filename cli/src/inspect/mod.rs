@@ -1,53 +1,72 @@
-//! Says what a sample table is worth, in figures and on one page of pictures.
+//! `fsot inspect`: says what a sample table is worth, in figures and on one page of pictures.
 //!
-//! ```text
-//! cargo run --release --example inspect_table -- table.npy --out page.png
-//! ```
-//!
-//! Prints shape, metadata, filtered error, bias, uniformity, low frequencies and the bound, as ratios to white noise
-//! of the same shape. The page shows a table and white noise side by side: the error of one integrand, before and
-//! after the filter, its spectrum, and the samples themselves.
+//! Prints shape, metadata, filtered error, bias, uniformity, low frequencies and the bound, as ratios to
+//! white noise of the same shape. The page shows a table and white noise side by side: the error of one
+//! integrand, before and after the filter, its spectrum, and the samples themselves.
 
 mod evenness;
+mod figures;
 mod integrand;
 mod page;
 mod panels;
 mod report;
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use crate::{Failure, temporal};
 use clap::Args;
+use fsot::config::DimensionGroup;
 use fsot::files::Metadata;
 use fsot::kernel::{SpatialKernel, TemporalKernel};
 use fsot::{Kernel, SampleTable};
 
-/// Measure a sample table against white noise of the same shape, and draw a page of it.
-#[derive(Args)]
+use self::figures::GroupFigures;
+use crate::console::Console;
+use crate::output::{self, Output};
+use crate::{Ended, Failure, Shared, temporal};
+
+const EXAMPLES: &str = "\
+Examples:
+  fsot inspect table.npy
+      figures, and a page of pictures in table.inspect.png
+  fsot inspect table.npy --sigma 1.5 --temporal ema:0.1 --out page.png
+      under another filter than the default
+  fsot inspect table.npy --no-page --json | jq .bound.ratio_to_white_noise
+      one figure for a script
+
+A signal ends it at once; the page is written whole or not at all.
+Exit codes: 0 done, 1 refused or failed, 2 bad command line.";
+
+/// Measures a sample table against white noise of the same shape, and draws a page of it.
+#[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
 pub struct Arguments {
     /// The table: a .npy file with axes [frame, y, x, sample, dim].
     path: PathBuf,
     /// Where to write the page [default: beside the table, as NAME.inspect.png].
     #[arg(long, value_name = "PNG")]
     out: Option<PathBuf>,
+    /// Do not draw the page.
+    #[arg(long, conflicts_with = "out")]
+    no_page: bool,
     /// Test integrands per family. 256 leave a standard error of about 2 % in the mean.
     #[arg(long, default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=65536))]
     integrands: u32,
-    /// none, gaussian:SIGMA, ema:ALPHA, box:N, binomial:N, perceptual:FPS or taps:a,b,… with the current frame first
-    /// [default: perceptual:60; none for a single frame].
+    /// none, gaussian:SIGMA, ema:ALPHA, box:N, binomial:N, perceptual:FPS or taps:a,b,… with the current
+    /// frame first [default: perceptual:60; none for a single frame].
     #[arg(long, value_parser = temporal::parse)]
     temporal: Option<TemporalKernel>,
     /// Width of the spatial Gaussian exp(-r²/sigma²), in pixels.
     #[arg(long, default_value_t = 2.1)]
     sigma: f64,
-    /// Slices per term of the bound, fewer for large subsets. The default leaves a standard error of about half a
-    /// percent.
+    /// Slices per term of the bound, fewer for large subsets. The default leaves a standard error of about
+    /// half a percent.
     #[arg(long, default_value_t = 16_384, value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
     bound_slices: u32,
     /// Names the integrands, the slices of the bound and the white noise that is shown.
     #[arg(long, default_value_t = 0)]
     seed: u64,
+    #[command(flatten)]
+    shared: Shared,
 }
 
 /// A table and how it is looked at.
@@ -76,11 +95,15 @@ impl Inspection {
 ///
 /// # Errors
 /// Whatever stands against it, in one sentence.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { path, integrands, bound_slices, sigma, seed, .. } = arguments;
+pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
+    let Arguments { path, integrands, bound_slices, sigma, seed, shared, .. } = arguments;
     let table = SampleTable::load(path)?;
-    let out = arguments.out.clone().unwrap_or_else(|| path.with_extension("inspect.png"));
-    check_out(&out, path)?;
+    let beside = Metadata::path_beside(path);
+    let page = arguments.page();
+    if let Some(page) = &page {
+        let output = Output { flag: "--out", path: page, endings: &["png"] };
+        output::check(&[output], &[path, &beside])?;
+    }
     let temporal = temporal::or_default(arguments.temporal.as_ref(), table.extent().frames);
     let inspection = Inspection {
         name: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
@@ -92,39 +115,34 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     // A bad kernel is found out before anything is said.
     inspection.kernel.taps(&inspection.table.extent())?;
+    shared.start_threads()?;
 
-    let mut console = std::io::stdout().lock();
-    report::header(&mut console, &inspection)?;
-    let beside = if Metadata::path_beside(path).exists() { Some(SampleTable::load_with(path)) } else { None };
-    report::metadata(&mut console, beside)?;
-    let shown = report::measure(&mut console, &inspection)?;
-    page::draw(&inspection, &shown)?.save(&out)?;
-    writeln!(console, "page: {}", out.display())?;
-    Ok(())
+    let mut console = Console::new(shared);
+    let metadata = beside.exists().then(|| SampleTable::load_with(path).map(|(_, metadata)| metadata));
+    console.say(|out| report::header(out, &inspection));
+    console.say(|out| report::metadata(out, metadata.as_ref()));
+    console.say(report::key);
+    let dims = DimensionGroup::pairs_and_whole(inspection.table.dims());
+    let mut groups = Vec::new();
+    for group in &dims {
+        let measured = GroupFigures::measure(&inspection, group.dims.clone())?;
+        console.say(|out| report::group(out, &measured));
+        groups.push(measured);
+    }
+    let bound = figures::bound(&inspection, &dims)?;
+    console.say(|out| report::bound(out, &bound));
+    if let (Some(page), Some(first)) = (&page, groups.first()) {
+        page::draw(&inspection, first)?.save(page)?;
+        console.say(|out| writeln!(out, "page: {}", page.display()));
+    }
+    console.figures(&figures::json(&inspection, metadata.as_ref(), &groups, &bound, page.as_deref()));
+    console.end(Ended::Done)
 }
 
-/// Refuses, before the work, to write over the table and into folders that do not exist.
-fn check_out(out: &Path, table: &Path) -> Result<(), Failure> {
-    for input in [table.to_owned(), Metadata::path_beside(table)] {
-        let same = match (out.canonicalize(), input.canonicalize()) {
-            (Ok(out), Ok(input)) => out == input,
-            _ => false,
-        };
-        if same {
-            return Err(format!("the page would overwrite {}: choose another --out", input.display()).into());
-        }
+impl Arguments {
+    /// Where the page is drawn, if it is.
+    fn page(&self) -> Option<PathBuf> {
+        let page = || self.out.clone().unwrap_or_else(|| self.path.with_extension("inspect.png"));
+        (!self.no_page).then(page)
     }
-    let folder = match out.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
-    if !folder.is_dir() {
-        return Err(
-            format!("there is no folder {}: make it or choose another --out", folder.display()).into()
-        );
-    }
-    if out.is_dir() {
-        return Err(format!("{} is a folder: give --out the name of a file", out.display()).into());
-    }
-    Ok(())
 }

@@ -4,9 +4,10 @@ use fsot::metrics::{Integrands, Spectra};
 use fsot::{Extent, SampleTable};
 
 use super::Inspection;
+use super::figures::GroupFigures;
 use super::integrand::{ErrorPictures, ordinary_half_plane};
 use super::panels::{Content, Curves, HEIGHT, Panel, SIDE, spectrum};
-use super::report::{Shown, filter, shape};
+use super::report::{filter, shape};
 use crate::Failure;
 use crate::draw::canvas::{Canvas, LINE, MARGIN, grey};
 use crate::draw::raster::Grey;
@@ -21,7 +22,7 @@ struct Row {
 }
 
 /// Draws the page of a table whose first dimension group was measured.
-pub fn draw(inspection: &Inspection, shown: &Shown) -> Result<Grey, Failure> {
+pub fn draw(inspection: &Inspection, shown: &GroupFigures) -> Result<Grey, Failure> {
     let Inspection { table, integrands, seed, .. } = inspection;
     let extent = table.extent();
     // Another seed than a table's own, which may have started from white noise of this very seed.
@@ -182,7 +183,7 @@ fn samples(table: &SampleTable, white: &SampleTable, dims: &[usize]) -> Row {
 }
 
 /// Histogram of the table and the radial averages of the spectra.
-fn statistics(inspection: &Inspection, shown: &Shown, white: &Spectra) -> Row {
+fn statistics(inspection: &Inspection, shown: &GroupFigures, white: &Spectra) -> Row {
     let evenness = &shown.evenness;
     let columns = evenness.per_side;
     // The second dimension goes up.

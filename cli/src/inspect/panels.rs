@@ -83,8 +83,8 @@ impl Panel {
     }
 }
 
-/// Values that are black at 0 and white at 2, over all frequencies of either axis; what is larger than a panel is
-/// averaged.
+/// Values that are black at 0 and white at 2, over all frequencies of either axis; what is larger than a
+/// panel is averaged.
 pub fn spectrum(values: &Array2<f64>) -> Content {
     let (height, width) = values.dim();
     let [down, across] = [height, width].map(|side| side.div_ceil(SIDE));

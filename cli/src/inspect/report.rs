@@ -1,32 +1,17 @@
 //! The figures, as text.
 
-use std::io::Write;
+use std::io::{self, Write};
 
-use fsot::config::DimensionGroup;
-use fsot::files::{Metadata, TableError};
+use fsot::files::{BoundEstimate, Metadata, TableError};
 use fsot::kernel::TemporalKernel;
-use fsot::metrics::{Bias, Bound, Discrepancy, Family, FilteredError, Integrands, Ratios, Spectra};
-use fsot::{Config, Extent, Objective, SampleTable};
+use fsot::metrics::Ratios;
+use fsot::{Extent, SampleTable};
 
 use super::Inspection;
 use super::evenness::Evenness;
-use crate::Failure;
+use super::figures::{GroupFigures, LOW};
 
-/// Cycles per pixel below which a frequency counts as low; the default filter halves the power at 0.09.
-const LOW: f64 = 0.1;
-
-/// Pairs of samples whose comparison takes some ten seconds.
-const MOST_PAIRS: u64 = 10_000_000_000;
-
-/// What the page shows of the first dimension group.
-pub struct Shown {
-    pub dims: Vec<usize>,
-    pub errors: FilteredError,
-    pub spectra: Spectra,
-    pub evenness: Evenness,
-}
-
-pub fn header(out: &mut dyn Write, inspection: &Inspection) -> Result<(), Failure> {
+pub fn header(out: &mut dyn Write, inspection: &Inspection) -> io::Result<()> {
     writeln!(out, "{}: {}", inspection.name, shape(&inspection.table))?;
     writeln!(
         out,
@@ -65,14 +50,11 @@ pub fn filter(inspection: &Inspection) -> String {
 }
 
 /// What lies beside the table: nothing, its metadata, or something damaged.
-pub fn metadata(
-    out: &mut dyn Write,
-    beside: Option<Result<(SampleTable, Metadata), TableError>>,
-) -> Result<(), Failure> {
+pub fn metadata(out: &mut dyn Write, beside: Option<&Result<Metadata, TableError>>) -> io::Result<()> {
     match beside {
         None => writeln!(out, "metadata: none beside the table")?,
         Some(Err(error)) => writeln!(out, "metadata: unusable: {error}")?,
-        Some(Ok((_, metadata))) => {
+        Some(Ok(metadata)) => {
             writeln!(
                 out,
                 "metadata: fsot {}, seed {}, {} slices per pixel and {} sweeps in {} steps, {:.2} s",
@@ -87,7 +69,8 @@ pub fn metadata(
                 let [before, after] = [bound.before, bound.after].map(|bound| bound.ratio_to_white_noise);
                 writeln!(
                     out,
-                    "          it says: bound {before:.3} -> {after:.3} of white noise, under its own objective"
+                    "{:10}it says: bound {before:.3} -> {after:.3} of white noise, under its own objective",
+                    ""
                 )?;
             }
         }
@@ -95,71 +78,54 @@ pub fn metadata(
     Ok(())
 }
 
-/// Measures and prints every dimension group, then the bound.
-pub fn measure(out: &mut dyn Write, inspection: &Inspection) -> Result<Shown, Failure> {
+/// How to read what follows.
+pub fn key(out: &mut dyn Write) -> io::Result<()> {
     writeln!(
         out,
         "\nall as ratios to white noise of the same shape: 1 = independent random numbers, 0 = no error"
-    )?;
-    let groups = DimensionGroup::pairs_and_whole(inspection.table.dims());
-    let mut shown = None;
-    for group in &groups {
-        let measured = measure_group(out, inspection, group.dims.clone())?;
-        shown.get_or_insert(measured);
-    }
-    write_bound(out, inspection, &groups)?;
-    shown.ok_or_else(|| "the table has no dimensions".into())
+    )
 }
 
-fn measure_group(out: &mut dyn Write, inspection: &Inspection, dims: Vec<usize>) -> Result<Shown, Failure> {
-    let Inspection { table, kernel, .. } = inspection;
-    let extent = table.extent();
-    let integrands = Integrands::random(dims.len(), inspection.integrands, inspection.seed)?;
+/// All figures of a dimension group.
+pub fn group(out: &mut dyn Write, figures: &GroupFigures) -> io::Result<()> {
+    let GroupFigures { dims, errors, bias, evenness, discrepancy, low, .. } = figures;
     let title = match dims.as_slice() {
         [one] => format!("dimension {one}"),
         [a, b] => format!("dimensions {a}, {b}"),
         all => format!("all {} dimensions", all.len()),
     };
     write!(out, "\n{title:22}")?;
-    integrands.families().iter().map(Family::name).try_for_each(|name| write!(out, "{name:>11}"))?;
+    errors.unfiltered.families.iter().try_for_each(|family| write!(out, "{:>11}", &*family.name))?;
     writeln!(out, "{:>11}", "mean")?;
-
-    let errors = FilteredError::measure(table, &dims, &integrands, kernel)?;
     write_ratios(out, "error, not filtered", &errors.unfiltered)?;
     write_ratios(out, "filtered in space", &errors.spatial)?;
-    if extent.frames > 1 {
+    if figures.animated {
         write_ratios(out, "in space and time", &errors.spatio_temporal)?;
     }
-    let bias = Bias::measure(table, &dims, &integrands)?;
     write_ratios(out, "bias of the table", &bias.table)?;
-    if extent.frames > 1 {
+    if figures.animated {
         write_ratios(out, "bias of a frame", &bias.frame)?;
     }
     write_ratios(out, "bias of a pixel", &bias.pixel)?;
 
-    let evenness = Evenness::new(table, &dims[..dims.len().min(2)])?;
     if dims.len() <= 2 {
-        write_evenness(out, &evenness)?;
+        write_evenness(out, evenness)?;
     }
-    let per_frame = (extent.samples() / extent.frames) as u64;
-    let pairs = per_frame.saturating_mul(per_frame).saturating_mul((extent.frames * dims.len()) as u64);
-    if pairs <= MOST_PAIRS {
-        let discrepancy = Discrepancy::measure(table, &dims)?.ratio_to_white_noise;
-        writeln!(out, "  squared L2 discrepancy of a frame {discrepancy:.4}")?;
-    } else {
-        writeln!(out, "  squared L2 discrepancy of a frame: left out, {per_frame} samples take too long")?;
+    match discrepancy {
+        Some(ratio) => writeln!(out, "  squared L2 discrepancy of a frame {ratio:.4}")?,
+        None => writeln!(
+            out,
+            "  squared L2 discrepancy of a frame: left out, {} samples take too long",
+            figures.samples_per_frame
+        )?,
     }
-    let spectra = Spectra::measure(table, &dims, &integrands)?;
-    let low = spectra.low_frequency_share(LOW);
-    if low.is_finite() {
-        writeln!(out, "  power at low frequencies (to {LOW} cycles per pixel) {low:.4}")?;
-    } else {
-        writeln!(out, "  power at low frequencies: none so low in a tile of this size")?;
+    match low {
+        Some(low) => writeln!(out, "  power at low frequencies (to {LOW} cycles per pixel) {low:.4}"),
+        None => writeln!(out, "  power at low frequencies: none so low in a tile of this size"),
     }
-    Ok(Shown { dims, errors, spectra, evenness })
 }
 
-fn write_ratios(out: &mut dyn Write, label: &str, ratios: &Ratios) -> Result<(), Failure> {
+fn write_ratios(out: &mut dyn Write, label: &str, ratios: &Ratios) -> io::Result<()> {
     write!(out, "  {label:20}")?;
     ratios.families.iter().try_for_each(|family| write!(out, "{:11.4}", family.ratio.mean))?;
     let mean = ratios.mean;
@@ -171,7 +137,7 @@ fn write_ratios(out: &mut dyn Write, label: &str, ratios: &Ratios) -> Result<(),
     Ok(())
 }
 
-fn write_evenness(out: &mut dyn Write, evenness: &Evenness) -> Result<(), Failure> {
+fn write_evenness(out: &mut dyn Write, evenness: &Evenness) -> io::Result<()> {
     if evenness.per_side == 1 {
         writeln!(out, "  histogram: too few samples")?;
         return Ok(());
@@ -192,20 +158,11 @@ fn write_evenness(out: &mut dyn Write, evenness: &Evenness) -> Result<(), Failur
     Ok(())
 }
 
-/// The objective of `Term::blue_noise` for this shape and filter, at the table.
-fn write_bound(
-    out: &mut dyn Write,
-    inspection: &Inspection,
-    groups: &[DimensionGroup],
-) -> Result<(), Failure> {
-    let Inspection { table, kernel, bound_slices, seed, .. } = inspection;
-    let config = Config::new(table.extent(), table.dims()).with_groups(groups).with_kernel(kernel.clone());
-    let objective = Objective::new(&config)?;
-    let total = Bound::measure(table, &objective, *seed, *bound_slices)?.total;
+/// The bound of the whole table.
+pub fn bound(out: &mut dyn Write, total: &BoundEstimate) -> io::Result<()> {
     writeln!(
         out,
         "\nbound {:.5} ± {:.5}, {:.4} ± {:.4} of white noise",
         total.value, total.standard_error, total.ratio_to_white_noise, total.ratio_standard_error
-    )?;
-    Ok(())
+    )
 }

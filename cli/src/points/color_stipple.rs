@@ -1,21 +1,39 @@
-//! Stippling in colour: every set of inks is spread like its part of the picture, so that dots of different inks avoid each
-//! other as well.
-//!
-//! `cargo run --release --example color_stippling -- --picture data/garden.png --out color_stippling.png`
+//! Stippling in colour: every set of inks is spread like its part of the picture, so that dots of different
+//! inks avoid each other as well.
 
+use std::io::{self, Write};
 use std::path::PathBuf;
 
-use crate::Failure;
-use crate::draw::page::Page;
 use clap::Args;
-use fsot::metrics::{DensityMatch, Samples};
+use fsot::Config;
 use fsot::targets::Inks;
-use fsot::{Config, Optimizer, Until};
+use serde::Serialize;
+use serde_json::json;
+
+use super::files::{Files, Record};
+use super::likeness::Likeness;
+use super::making::{Figures, make, tell};
+use super::page::{sheet, sheet_size};
+use super::set::PointSet;
+use crate::interrupt::Interrupt;
+use crate::progress::Progress;
+use crate::{Ended, Failure, Shared};
+
+const EXAMPLES: &str = "\
+Examples:
+  fsot points color-stipple --picture garden.png --out dots.png
+      a picture in dots of cyan, magenta, yellow and black
+  fsot points color-stipple --picture garden.png --count 50000 --points dots.csv
+      the dots as a list, not drawn: x from left to right, y from top to bottom, each from 0 to 1
+
+Labels are 0 for cyan, 1 for magenta, 2 for yellow, 3 for black, and points lie in their order.
+Exit codes: 0 done, 1 refused or failed, 2 bad command line, 3 ended early by a signal, points written.";
 
 /// Makes points in cyan, magenta, yellow and black that resemble a picture, and draws them.
-#[derive(Args)]
+#[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
 pub struct Arguments {
-    /// PNG or EXR file.
+    /// PNG or EXR file; the default is a garden that comes with the source code.
     #[arg(long, default_value = "data/garden.png")]
     picture: PathBuf,
     /// Points in all.
@@ -27,57 +45,82 @@ pub struct Arguments {
     /// Names every random number: the same seed gives the same bits.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Where to write the picture.
-    #[arg(long, default_value = "color_stippling.png")]
-    out: PathBuf,
+    #[command(flatten)]
+    files: Files,
+    #[command(flatten)]
+    shared: Shared,
 }
 
-const LONGER_SIDE: usize = 1400;
-const MARGIN: usize = 20;
 const NAMES: [&str; 4] = ["cyan", "magenta", "yellow", "black"];
 const INKS: [[u8; 3]; 4] = [[0, 165, 220], [225, 20, 130], [250, 225, 0], [25, 25, 30]];
 
 /// Makes it.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let begin = std::time::Instant::now();
-    let inks = Inks::open(&arguments.picture)?;
-    let config = Config::color_stippling(arguments.count, &inks).with_seed(arguments.seed);
+pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
+    let Arguments { picture, count, slices, seed, files, shared } = arguments;
+    let places = files.check("color_stippling.png", &[picture])?;
+    shared.start_threads()?;
+    let inks = Inks::open(picture)?;
+    let config = Config::color_stippling(*count, &inks).with_seed(*seed);
     let sets = config.terms.len();
-    let mut optimizer = Optimizer::new(config)?;
-    let planned = begin.elapsed().as_secs_f64();
-    let report = optimizer.run(Until::SlicesPerClass(arguments.slices))?;
-    println!(
-        "{sets} sets of inks, planned in {planned:.2} s, optimised in {:.2} s",
-        report.elapsed.as_secs_f64()
-    );
+    let made = make(config, *slices, &Progress::new(shared))?;
+    let labels = (0..).zip(inks.counts(*count)).flat_map(|(ink, count)| vec![ink; count]).collect();
+    let set = PointSet::new(made.table, labels);
+    let flags = json!({
+        "picture": picture.display().to_string(),
+        "count": count,
+        "slices": slices,
+        "seed": seed,
+    });
+    let record =
+        Record { kind: "color-stipple", flags, labels: NAMES.map(String::from).into(), run: made.work };
+    places.write(&set, &record, || {
+        // Inks are of one size, and there is at least one.
+        let density = (0..NAMES.len()).find_map(|ink| inks.density(ink));
+        let size = sheet_size(density.map_or([1, 1], |density| density.size()));
+        let radius = (0.5 * ((size[0] * size[1]) as f64 / *count as f64).sqrt()).clamp(1.0, 6.0);
+        sheet(size, radius, set.iter().map(|(dot, ink)| (dot, INKS[ink as usize % INKS.len()])))
+    })?;
 
-    let table = optimizer.into_table();
-    let counts = inks.counts(arguments.count);
-    let mut labelled = Vec::new();
-    let mut rest = table.values();
-    let mut size = [1, 1];
-    for (ink, &count) in counts.iter().enumerate() {
-        let (these, others) = rest.split_at(2 * count);
-        rest = others;
-        labelled.extend(these.chunks_exact(2).map(|dot| (dot, INKS[ink])));
-        let Some(density) = inks.density(ink).filter(|_| count > 0) else { continue };
-        size = density.size();
-        let shape = size[0].min(size[1]) as f64 / size[0].max(size[1]) as f64;
-        let sigma = 2.0 * (shape / count as f64).sqrt();
-        let found = DensityMatch::measure(Samples::points(these, 2)?, [0, 1], &density, sigma)?;
-        println!(
-            "{}: {count} points, correlation {:.4}, strays {}",
-            NAMES[ink], found.correlation, found.strays
-        );
-        assert!(count < 1000 || found.correlation > 0.9, "the points don't resemble the picture");
+    let measure = move || InkLikenesses::measure(&set, &inks, sets);
+    let figures = Interrupt::listen()?.unless_it_comes(measure).transpose()?;
+    tell(shared, *count, &made.work, &places, &figures)
+}
+
+/// How the points of each ink resemble it.
+#[derive(Serialize)]
+struct InkLikenesses {
+    /// Sets of inks that were optimised.
+    sets: usize,
+    inks: Vec<InkLikeness>,
+}
+
+#[derive(Serialize)]
+struct InkLikeness {
+    ink: &'static str,
+    #[serde(flatten)]
+    likeness: Likeness,
+}
+
+impl InkLikenesses {
+    fn measure(set: &PointSet, inks: &Inks, sets: usize) -> Result<Self, Failure> {
+        let mut found = Vec::new();
+        for (label, ink) in NAMES.into_iter().enumerate() {
+            let points = set.with_labels(&[label as u32]);
+            let Some(density) = inks.density(label).filter(|_| !points.is_empty()) else { continue };
+            found.push(InkLikeness { ink, likeness: Likeness::measure(&points, &density)? });
+        }
+        Ok(Self { sets, inks: found })
     }
+}
 
-    let longer = size[0].max(size[1]);
-    let size = size.map(|len| LONGER_SIDE * len / longer);
-    let mut page = Page::new(size[0] + 2 * MARGIN, size[1] + 2 * MARGIN);
-    let radius = (0.5 * ((size[0] * size[1]) as f64 / arguments.count as f64).sqrt()).clamp(1.0, 6.0);
-    page.scatter([MARGIN; 2], size, radius, labelled);
-    page.picture.save(&arguments.out)?;
-    println!("{}", arguments.out.display());
-    Ok(())
+impl Figures for InkLikenesses {
+    fn words(&self, out: &mut dyn Write) -> io::Result<()> {
+        writeln!(out, "{} sets of inks", self.sets)?;
+        for InkLikeness { ink, likeness } in &self.inks {
+            let Likeness { points, correlation, strays, advice, .. } = likeness;
+            writeln!(out, "{ink}: {points} points, correlation {correlation:.4}, strays {strays}")?;
+            advice.iter().try_for_each(|advice| writeln!(out, "  {advice}"))?;
+        }
+        Ok(())
+    }
 }

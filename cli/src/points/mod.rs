@@ -1,22 +1,42 @@
-//! `fsot points`: point sets.
-
-use clap::{Args, Subcommand};
-
-use crate::Failure;
+//! `fsot points`: point sets, drawn and as coordinates.
 
 mod color_stipple;
+mod files;
+mod likeness;
+mod making;
+mod page;
 mod progressive;
+mod set;
 mod stipple;
 mod two_class;
 
-/// Makes point sets.
-#[derive(Args)]
+use clap::{Args, Subcommand};
+
+use crate::{Ended, Failure};
+
+const EXAMPLES: &str = "\
+Examples:
+  fsot points two-class --counts 512,512
+      two classes, drawn side by side in two_class.png
+  fsot points progressive --count 4096 --points sequence.npy
+      a sequence whose first 2, 4, 8, ... points are uniform, for numpy.load
+  fsot points stipple --picture face.png --points dots.csv --out dots.png
+      a picture in dots, drawn and as a list with the header x,y,label
+'fsot points KIND --help' says more about each.
+
+A signal (Ctrl-C, SIGTERM, SIGHUP) ends a run with the step that is being taken, and keeps the points as
+they are then.
+Exit codes: 0 done, 1 refused or failed, 2 bad command line, 3 ended early by a signal, points written.";
+
+/// Makes point sets: labelled classes, progressive sequences, stipplings.
+#[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
 pub struct Arguments {
     #[command(subcommand)]
     kind: Kind,
 }
 
-#[derive(Subcommand)]
+#[derive(Debug, Subcommand)]
 enum Kind {
     TwoClass(two_class::Arguments),
     Progressive(progressive::Arguments),
@@ -28,7 +48,7 @@ enum Kind {
 ///
 /// # Errors
 /// Whatever stands against it, in one sentence.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
     match &arguments.kind {
         Kind::TwoClass(arguments) => two_class::run(arguments),
         Kind::Progressive(arguments) => progressive::run(arguments),

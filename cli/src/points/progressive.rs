@@ -1,18 +1,36 @@
 //! A progressive sequence: its first 2, 4, 8, … points are uniform, each as well as may be.
-//!
-//! `cargo run --release --example progressive -- --out progressive.png`
 
-use std::path::PathBuf;
+use std::io::{self, Write};
 
-use crate::Failure;
-use crate::draw::page::Page;
 use clap::{Args, ValueEnum};
 use fsot::classes::PrefixLengths;
 use fsot::metrics::{Integrands, MeasureError, Samples, SetError};
-use fsot::{Config, Optimizer, Until};
+use fsot::{Config, SampleTable};
+use serde::Serialize;
+use serde_json::json;
 
-/// Makes progressive sequences, compares their prefixes with Owen-scrambled Sobol' points, and draws some of them.
-#[derive(Args)]
+use super::files::{Files, Record};
+use super::making::{Figures, Work, make, tell};
+use super::page::{BLACK, squares};
+use super::set::PointSet;
+use crate::interrupt::Interrupt;
+use crate::progress::Progress;
+use crate::{Ended, Failure, Shared};
+
+const EXAMPLES: &str = "\
+Examples:
+  fsot points progressive
+      4096 points, compared with Owen-scrambled Sobol' points, in progressive.png
+  fsot points progressive --count 1024 --prefixes every --points sequence.csv
+      every prefix is a class, not only those of 2, 4, 8, ... points
+  fsot points progressive --seeds 10 --points ten.npy
+      ten sequences; the label of a point is the seed of its sequence
+
+Exit codes: 0 done, 1 refused or failed, 2 bad command line, 3 ended early by a signal, points written.";
+
+/// Makes progressive sequences, compares their prefixes with Owen-scrambled Sobol' points, and draws some.
+#[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
 pub struct Arguments {
     /// Points of the sequence.
     #[arg(long, default_value_t = 4096)]
@@ -23,76 +41,144 @@ pub struct Arguments {
     /// Slices per class.
     #[arg(long, default_value_t = 8000)]
     slices: u64,
-    /// Sequences to average over.
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
-    seeds: u64,
+    /// Sequences to make and to average over: those of the seeds 0, 1, …
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    seeds: u32,
     /// Integrands per family.
-    #[arg(long, default_value_t = 256)]
-    integrands: usize,
-    /// Where to write the picture.
-    #[arg(long, default_value = "progressive.png")]
-    out: PathBuf,
+    #[arg(long, default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=65536))]
+    integrands: u32,
+    #[command(flatten)]
+    files: Files,
+    #[command(flatten)]
+    shared: Shared,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
+#[derive(Clone, Copy, Debug, Serialize, ValueEnum)]
+#[serde(rename_all = "snake_case")]
 enum Prefixes {
     Powers,
     Every,
 }
 
 const SIDE: usize = 380;
-const MARGIN: usize = 20;
-const BLACK: [u8; 3] = [20, 20, 24];
+
+/// Scramblings of Sobol' points to average over, and the longest of their sequences.
+const SCRAMBLINGS: u32 = 10;
+const LONGEST_SOBOL: usize = 1 << 16;
 
 /// Makes it.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let mut sequences = Vec::new();
-    for seed in 0..arguments.seeds {
-        let lengths = match arguments.prefixes {
+pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
+    let Arguments { count, prefixes, slices, seeds, integrands, files, shared } = arguments;
+    let places = files.check("progressive.png", &[])?;
+    shared.start_threads()?;
+    let progress = Progress::new(shared);
+    let mut work = Work::default();
+    let mut sequences: Vec<SampleTable> = Vec::new();
+    let mut set = PointSet::default();
+    for seed in 0..*seeds {
+        let lengths = match prefixes {
             Prefixes::Powers => PrefixLengths::PowersOfTwo,
             Prefixes::Every => PrefixLengths::Every,
         };
-        let config = Config::progressive(arguments.count, 2, lengths).with_seed(seed);
-        let mut optimizer = Optimizer::new(config)?;
-        let report = optimizer.run(Until::SlicesPerClass(arguments.slices))?;
-        println!("seed {seed}: {:.2} s", report.elapsed.as_secs_f64());
-        sequences.push(optimizer.into_table().into_values());
-    }
-
-    println!("mean squared integration error, as ratio to white noise of the same length");
-    println!("{:>7} {:>12} {:>12} {:>7}", "points", "sequence", "Owen-Sobol'", "ratio");
-    let integrands = Integrands::random(2, arguments.integrands, 0)?;
-    let sobol = |seed: u32| {
-        let point = move |index| [0, 1].map(|dim| sobol_burley::sample(index, dim, seed));
-        (0..arguments.count as u32).flat_map(point).collect::<Vec<f32>>()
-    };
-    let scrambled: Vec<Vec<f32>> = (0..10).map(sobol).collect();
-    let mean = |sets: &[Vec<f32>], length: usize| -> Result<f64, MeasureError> {
-        let mut sum = 0.0;
-        for set in sets {
-            let prefix = Samples::points(set, 2)?.select(..length)?;
-            sum += SetError::measure(prefix, &[0, 1], &integrands)?.ratios.mean.mean;
+        if *seeds > 1 {
+            progress.begin(&format!("seed {seed} of {seeds}"));
         }
-        Ok(sum / sets.len() as f64)
+        let made = make(Config::progressive(*count, 2, lengths).with_seed(seed.into()), *slices, &progress)?;
+        set.append(made.table.clone(), seed);
+        sequences.push(made.table);
+        work = work.and(made.work);
+        if work.run.ended_early {
+            break;
+        }
+        if seed + 1 < *seeds && Interrupt::listen()?.came() {
+            work.run.ended_early = true;
+            break;
+        }
+    }
+    let record = Record {
+        kind: "progressive",
+        flags: json!({ "count": count, "prefixes": prefixes, "slices": slices, "seeds": seeds }),
+        labels: (0..sequences.len()).map(|seed| format!("seed {seed}")).collect(),
+        run: work,
     };
-    let powers = (0..).map(|power| 1_usize << power).take_while(|&length| length <= arguments.count);
-    for length in powers.filter(|&length| length > 2) {
+    places.write(&set, &record, || {
+        let panel = |part: usize| {
+            let length = (count / part).max(1);
+            let radius = (0.25 * SIDE as f64 / (length as f64).sqrt()).clamp(0.7, 5.0);
+            (radius, set.iter().take(length).map(|(dot, _)| (dot, BLACK)).collect())
+        };
+        squares(SIDE, [64, 16, 4, 1].into_iter().map(panel).collect())
+    })?;
+
+    let (count, integrands) = (*count, *integrands as usize);
+    let measure = move || PrefixErrors::measure(&sequences, count, integrands);
+    let figures = Interrupt::listen()?.unless_it_comes(measure).transpose()?;
+    tell(shared, set.count(), &work, &places, &figures)
+}
+
+/// Errors of prefixes beside those of Sobol' points.
+#[derive(Serialize)]
+struct PrefixErrors {
+    sequences: usize,
+    prefixes: Vec<PrefixError>,
+}
+
+#[derive(Serialize)]
+struct PrefixError {
+    points: usize,
+    /// Mean squared integration error, as ratio to white noise of the same length.
+    error: f64,
+    /// The same of Owen-scrambled Sobol' points, as far as their sequence goes.
+    sobol: Option<f64>,
+}
+
+impl PrefixErrors {
+    fn measure(sequences: &[SampleTable], count: usize, integrands: usize) -> Result<Self, Failure> {
+        let integrands = Integrands::random(2, integrands, 0)?;
+        let sobol = |seed: u32| {
+            let point = move |index| [0, 1].map(|dim| sobol_burley::sample(index, dim, seed));
+            (0..count.min(LONGEST_SOBOL) as u32).flat_map(point).collect::<Vec<f32>>()
+        };
+        let scrambled: Vec<Vec<f32>> = (0..SCRAMBLINGS).map(sobol).collect();
+        let mean = |sets: &mut dyn Iterator<Item = &[f32]>, length: usize| -> Result<f64, MeasureError> {
+            let (mut sum, mut sets_summed) = (0.0, 0.0);
+            for set in sets {
+                let prefix = Samples::points(set, 2)?.select(..length)?;
+                sum += SetError::measure(prefix, &[0, 1], &integrands)?.ratios.mean.mean;
+                sets_summed += 1.0;
+            }
+            Ok(sum / sets_summed)
+        };
+        let powers = (2..usize::BITS).map(|power| 1_usize << power).take_while(|&length| length <= count);
         // Between the powers of two, too.
-        for length in [length, length + length / 2].into_iter().filter(|&length| length <= arguments.count) {
-            let (ours, theirs) = (mean(&sequences, length)?, mean(&scrambled, length)?);
-            println!("{length:>7} {ours:>12.4} {theirs:>12.4} {:>7.2}", ours / theirs);
+        let lengths = powers.flat_map(|length| [length, length + length / 2]);
+        let mut prefixes = Vec::new();
+        for points in lengths.filter(|&length| length <= count) {
+            let error = mean(&mut sequences.iter().map(SampleTable::values), points)?;
+            let sobol = match points {
+                ..=LONGEST_SOBOL => Some(mean(&mut scrambled.iter().map(Vec::as_slice), points)?),
+                _ => None,
+            };
+            prefixes.push(PrefixError { points, error, sobol });
         }
+        Ok(Self { sequences: sequences.len(), prefixes })
     }
+}
 
-    let shown: Vec<usize> = [64, 16, 4, 1].into_iter().map(|part| (arguments.count / part).max(1)).collect();
-    let mut page = Page::new(MARGIN + shown.len() * (SIDE + MARGIN), SIDE + 2 * MARGIN);
-    for (panel, &length) in shown.iter().enumerate() {
-        let corner = [MARGIN + panel * (SIDE + MARGIN), MARGIN];
-        let radius = (0.25 * SIDE as f64 / (length as f64).sqrt()).clamp(0.7, 5.0);
-        let dots = sequences[0].chunks_exact(2).take(length);
-        page.scatter(corner, [SIDE, SIDE], radius, dots.map(|dot| (dot, BLACK)));
+impl Figures for PrefixErrors {
+    fn words(&self, out: &mut dyn Write) -> io::Result<()> {
+        if self.sequences > 1 {
+            writeln!(out, "mean over {} sequences", self.sequences)?;
+        }
+        writeln!(out, "mean squared integration error, as ratio to white noise of the same length")?;
+        writeln!(out, "{:>7} {:>12} {:>12} {:>7}", "points", "sequence", "Owen-Sobol'", "ratio")?;
+        for &PrefixError { points, error, sobol } in &self.prefixes {
+            write!(out, "{points:>7} {error:>12.4}")?;
+            match sobol {
+                Some(sobol) => writeln!(out, " {sobol:>12.4} {:>7.2}", error / sobol)?,
+                None => writeln!(out, " {:>12} {:>7}", "-", "-")?,
+            }
+        }
+        Ok(())
     }
-    page.picture.save(&arguments.out)?;
-    println!("{}", arguments.out.display());
-    Ok(())
 }

@@ -1,20 +1,39 @@
 //! Stippling: points as dense as a picture is dark.
-//!
-//! `cargo run --release --example stippling -- --picture data/lantern.png --out stippling.png`
 
+use std::io::{self, Write};
 use std::path::PathBuf;
 
-use crate::Failure;
-use crate::draw::page::Page;
 use clap::Args;
-use fsot::metrics::DensityMatch;
+use fsot::Config;
 use fsot::targets::{Density, Tone};
-use fsot::{Config, Optimizer, Until};
+use serde_json::json;
+
+use super::files::{Files, Record};
+use super::likeness::{Likeness, blur};
+use super::making::{Figures, make, tell};
+use super::page::{BLACK, LONGER_SIDE, sheet, sheet_size};
+use super::set::PointSet;
+use crate::interrupt::Interrupt;
+use crate::progress::Progress;
+use crate::{Ended, Failure, Shared};
+
+const EXAMPLES: &str = "\
+Examples:
+  fsot points stipple --picture face.png --count 20000 --out dots.png
+      a picture in 20000 dots
+  fsot points stipple --picture face.png --points dots.csv
+      the dots as a list, not drawn: x from left to right, y from top to bottom, each from 0 to 1
+  fsot points stipple --picture stars.exr --bright --count 4096 --slices 32000 --seed 3
+      bright where the picture is bright, with twice the work, in stippling.png
+
+All labels are 0.
+Exit codes: 0 done, 1 refused or failed, 2 bad command line, 3 ended early by a signal, points written.";
 
 /// Makes points that resemble a picture, measures how well they do, and draws them.
-#[derive(Args)]
+#[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
 pub struct Arguments {
-    /// PNG or EXR file.
+    /// PNG or EXR file; the default is a lantern that comes with the source code.
     #[arg(long, default_value = "data/lantern.png")]
     picture: PathBuf,
     /// Points.
@@ -29,41 +48,43 @@ pub struct Arguments {
     /// Names every random number: the same seed gives the same bits.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Where to write the picture.
-    #[arg(long, default_value = "stippling.png")]
-    out: PathBuf,
+    #[command(flatten)]
+    files: Files,
+    #[command(flatten)]
+    shared: Shared,
 }
 
-const LONGER_SIDE: usize = 1400;
-const MARGIN: usize = 20;
-const BLACK: [u8; 3] = [20, 20, 24];
-
 /// Makes it.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let begin = std::time::Instant::now();
-    let tone = if arguments.bright { Tone::Bright } else { Tone::Dark };
-    let density = Density::open(&arguments.picture, tone)?;
-    let config = Config::stippling(arguments.count, density.clone()).with_seed(arguments.seed);
-    let mut optimizer = Optimizer::new(config)?;
-    let planned = begin.elapsed();
-    let report = optimizer.run(Until::SlicesPerClass(arguments.slices))?;
-    println!("planned in {:.2} s, optimised in {:.2} s", planned.as_secs_f64(), report.elapsed.as_secs_f64());
+pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
+    let Arguments { picture, count, bright, slices, seed, files, shared } = arguments;
+    let places = files.check("stippling.png", &[picture])?;
+    shared.start_threads()?;
+    let density = Density::open(picture, if *bright { Tone::Bright } else { Tone::Dark })?;
+    let config = Config::stippling(*count, density.clone()).with_seed(*seed);
+    let made = make(config, *slices, &Progress::new(shared))?;
+    let set = PointSet::new(made.table, vec![0; *count]);
+    let flags = json!({
+        "picture": picture.display().to_string(),
+        "count": count,
+        "bright": bright,
+        "slices": slices,
+        "seed": seed,
+    });
+    let record = Record { kind: "stipple", flags, labels: vec!["ink".into()], run: made.work };
+    places.write(&set, &record, || {
+        let radius = (0.3 * blur(*count, &density) * LONGER_SIDE as f64 / 2.0).clamp(0.8, 6.0);
+        sheet(sheet_size(density.size()), radius, set.iter().map(|(dot, _)| (dot, BLACK)))
+    })?;
 
-    let table = optimizer.into_table();
-    // Two distances between neighbours, if all of the picture were equally dark.
-    let [width, height] = density.size();
-    let shape = width.min(height) as f64 / width.max(height) as f64;
-    let sigma = 2.0 * (shape / arguments.count as f64).sqrt();
-    let found = DensityMatch::measure(&table, [0, 1], &density, sigma)?;
-    println!("correlation {:.4}, strays {}, blurred by {sigma:.4}", found.correlation, found.strays);
-    assert!(arguments.count < 1000 || found.correlation > 0.9, "the points don't resemble the picture");
+    let measure = move || Likeness::measure(&set.with_labels(&[0]), &density);
+    let figures = Interrupt::listen()?.unless_it_comes(measure).transpose()?;
+    tell(shared, *count, &made.work, &places, &figures)
+}
 
-    let side = |len: usize| LONGER_SIDE * len / width.max(height);
-    let size = [side(width), side(height)];
-    let mut page = Page::new(size[0] + 2 * MARGIN, size[1] + 2 * MARGIN);
-    let radius = (0.3 * sigma * LONGER_SIDE as f64 / 2.0).clamp(0.8, 6.0);
-    page.scatter([MARGIN; 2], size, radius, table.values().chunks_exact(2).map(|dot| (dot, BLACK)));
-    page.picture.save(&arguments.out)?;
-    println!("{}", arguments.out.display());
-    Ok(())
+impl Figures for Likeness {
+    fn words(&self, out: &mut dyn Write) -> io::Result<()> {
+        let Self { correlation, strays, blur, advice, .. } = self;
+        writeln!(out, "correlation {correlation:.4}, strays {strays}, blurred by {blur:.4}")?;
+        advice.iter().try_for_each(|advice| writeln!(out, "{advice}"))
+    }
 }

@@ -1,28 +1,39 @@
-//! `fsot table` as a user meets it: files, words, exit codes.
+//! `fsot` as a user meets it: files, words, exit codes.
 
 mod mistakes;
+mod outputs;
+mod points;
+mod printing;
 mod runs;
+#[cfg(unix)]
+mod signals;
 
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// A run of `fsot table` in this directory; arguments are separated by spaces.
+/// `fsot` in this directory; arguments are separated by spaces.
 fn command(home: &Path, arguments: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_fsot"));
-    command.current_dir(home).arg("table").args(arguments.split_whitespace());
+    command.current_dir(home).args(arguments.split_whitespace());
     command
 }
 
+/// What comes of `fsot table`.
 fn output(home: &Path, arguments: &str) -> Output {
-    command(home, arguments).output().unwrap()
+    command(home, &format!("table {arguments}")).output().unwrap()
+}
+
+/// Runs `fsot table` and returns what was printed; anything but success fails.
+fn succeed(home: &Path, arguments: &str) -> (String, String) {
+    run(home, &format!("table {arguments}"))
 }
 
 /// Runs and returns what was printed; anything but success fails.
-fn succeed(home: &Path, arguments: &str) -> (String, String) {
-    let output = output(home, arguments);
+fn run(home: &Path, arguments: &str) -> (String, String) {
+    let output = command(home, arguments).output().unwrap();
     let (out, err) = texts(&output);
-    assert!(output.status.success(), "{arguments}: {err}");
+    assert_eq!(output.status.code(), Some(0), "{arguments}: {err}");
     (out, err)
 }
 

@@ -1,6 +1,5 @@
 //! Runs that are refused: one clear sentence, a failing exit code, no panic, no file.
 
-use std::fs;
 use std::path::Path;
 
 use tempfile::tempdir;
@@ -112,26 +111,6 @@ fn temporal_kernels() {
         ("--temporal none:3", "'none:3' is no temporal kernel: write none, gaussian:SIGMA"),
         ("--temporal foo", "'foo' is no temporal kernel"),
     ]);
-}
-
-/// Found out before the work: the default run would take seconds, and a long one hours.
-#[test]
-fn paths() {
-    let home = tempdir().unwrap();
-    fs::create_dir(home.path().join("directory")).unwrap();
-    fs::create_dir(home.path().join("directory.npy")).unwrap();
-    for (out, words) in [
-        ("missing/table.npy", "missing"),
-        ("directory", "directory"),
-        ("directory.npy", "directory.npy"),
-        ("table.json", "\"table.json\" cannot name a table: give a file name that ends in .npy"),
-        ("/", "cannot name a table"),
-        ("directory/..", "cannot name a table"),
-    ] {
-        let sentence = refused(home.path(), &format!("--slices-per-class 100000000 --out {out}"));
-        assert!(sentence.contains(words), "{out}: {sentence}");
-        assert_eq!(names(&home.path().join("directory")), [""; 0]);
-    }
 }
 
 /// What the library refuses takes one line, without usage and hints.

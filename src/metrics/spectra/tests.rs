@@ -91,3 +91,24 @@ fn a_table_is_the_mean_of_its_images() {
     };
     assert_eq!(on(1), on(2));
 }
+
+/// White noise prefers no direction: 64 tables within 4 standard errors of 1 in every ring.
+#[test]
+fn white_noise_is_isotropic_and_stripes_are_not() {
+    let integrands = Integrands::random(2, 16, 1).unwrap();
+    let rings: Vec<[AnisotropyRing; 3]> = (0..64)
+        .map(|seed| {
+            let table = SampleTable::white_noise(Extent::still(32, 32), 2, seed).unwrap();
+            Spectra::measure(&table, &[0, 1], &integrands).unwrap().anisotropy()
+        })
+        .collect();
+    for ring in 0..3 {
+        // Logarithms, so that a ratio and its inverse are alike.
+        let over = Estimate::of(rings.iter().map(|rings| rings[ring].along_y_over_along_x.ln()));
+        assert!(over.mean.abs() < 4.0 * over.standard_error, "{ring}: {over:?}");
+        assert!(over.standard_error < 0.03, "{ring}: {over:?}");
+    }
+    let stripes = ndarray::Array3::from_shape_fn((1, 32, 32), |(_, _, x)| if x % 4 < 2 { 0.5 } else { -0.5 });
+    let of_stripes = Spectra::of_image(stripes.view(), 0.25).anisotropy()[1].along_y_over_along_x;
+    assert!(of_stripes < 1e-6, "{of_stripes}");
+}

@@ -1,0 +1,32 @@
+//! Flags that every verb has.
+
+use clap::Args;
+
+use crate::Failure;
+
+/// Threads, and what is printed.
+#[derive(Args, Clone, Debug)]
+pub struct Shared {
+    /// Threads; 0 uses every core. The result does not depend on it.
+    #[arg(long, default_value_t = 0)]
+    pub threads: usize,
+    /// No progress bar and no words.
+    #[arg(long)]
+    pub quiet: bool,
+    /// Print one line of JSON with all figures, and nothing else.
+    #[arg(long)]
+    pub json: bool,
+}
+
+impl Shared {
+    /// Gives this process as many threads as were asked for.
+    ///
+    /// # Errors
+    /// More threads than the system has to give.
+    pub(crate) fn start_threads(&self) -> Result<(), Failure> {
+        match self.threads {
+            0 => Ok(()),
+            threads => Ok(rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?),
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! Where a point set goes: a picture, coordinates, and how they were made.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde::Serialize;
+use serde_json::Value;
+
+use super::making::Work;
+use super::set::PointSet;
+use crate::Failure;
+use crate::draw::raster::Color;
+use crate::output::{self, Output};
+
+/// Files that are asked for.
+#[derive(Args, Debug)]
+pub struct Files {
+    /// Where to draw the points [default: a file that is named for what is made, unless --points is given].
+    #[arg(long, value_name = "PNG")]
+    out: Option<PathBuf>,
+    /// Where to write the coordinates: .csv with the header x,y,label, or .npy with float32 of shape [n, 3]
+    /// and the same columns; how they were made goes beside it, as NAME.points.json.
+    #[arg(long, value_name = "NPY|CSV")]
+    points: Option<PathBuf>,
+}
+
+/// Files that can be written.
+#[derive(Debug)]
+pub struct Places {
+    picture: Option<PathBuf>,
+    points: Option<PathBuf>,
+}
+
+/// How points were made, for the file beside them.
+#[derive(Debug, Serialize)]
+pub struct Record {
+    /// Which verb has made them.
+    pub kind: &'static str,
+    /// Its flags.
+    pub flags: Value,
+    /// What the labels mean, from 0.
+    pub labels: Vec<String>,
+    /// How much work was done, and whether it ended early.
+    pub run: Work,
+}
+
+/// Kind and version of the file; the number grows when an old reader would misunderstand a new file.
+const FORMAT: &str = "fsot point set 1";
+const COLUMNS: [&str; 3] = ["x", "y", "label"];
+
+impl Files {
+    /// Refuses, before the work, what could not be written after it.
+    pub fn check(&self, default: &str, inputs: &[&Path]) -> Result<Places, Failure> {
+        let default = self.points.is_none().then(|| PathBuf::from(default));
+        let places = Places { picture: self.out.clone().or(default), points: self.points.clone() };
+        let beside = places.record();
+        let mut outputs = Vec::new();
+        outputs.extend(places.picture.as_deref().map(|path| Output {
+            flag: "--out",
+            path,
+            endings: &["png"],
+        }));
+        outputs.extend(places.points.as_deref().map(|path| Output {
+            flag: "--points",
+            path,
+            endings: &["npy", "csv"],
+        }));
+        outputs.extend(beside.as_deref().map(|path| Output { flag: "--points", path, endings: &["json"] }));
+        output::check(&outputs, inputs)?;
+        Ok(places)
+    }
+}
+
+impl Places {
+    fn record(&self) -> Option<PathBuf> {
+        self.points.as_ref().map(|path| path.with_extension("points.json"))
+    }
+
+    /// Writes all that was asked for.
+    pub fn write(
+        &self,
+        set: &PointSet,
+        record: &Record,
+        draw: impl FnOnce() -> Color,
+    ) -> Result<(), Failure> {
+        if let (Some(path), Some(beside)) = (&self.points, self.record()) {
+            set.save(path)?;
+            let crate_version = env!("CARGO_PKG_VERSION");
+            let text =
+                Written { format: FORMAT, crate_version, columns: COLUMNS, points: set.count(), record };
+            output::write("--points", &beside, |out| {
+                serde_json::to_writer_pretty(&mut *out, &text)?;
+                writeln!(out)
+            })?;
+        }
+        match &self.picture {
+            Some(path) => draw().save(path),
+            None => Ok(()),
+        }
+    }
+
+    /// The files, as they are named to a person.
+    pub fn names(&self) -> Vec<String> {
+        let files = [self.picture.clone(), self.points.clone(), self.record()];
+        files.into_iter().flatten().map(|path| path.display().to_string()).collect()
+    }
+}
+
+#[derive(Serialize)]
+struct Written<'a> {
+    format: &'static str,
+    crate_version: &'static str,
+    columns: [&'static str; 3],
+    points: usize,
+    #[serde(flatten)]
+    record: &'a Record,
+}

@@ -1,0 +1,37 @@
+//! A run of the optimiser under a progress bar, which a signal ends early.
+
+use fsot::config::{EndReason, Work};
+use fsot::files::RunRecord;
+use fsot::{Optimizer, RunReport, Until};
+
+use crate::Failure;
+use crate::interrupt::Interrupt;
+use crate::progress::Progress;
+
+/// Runs; after a signal it ends with the step that is being taken.
+///
+/// # Errors
+/// As [`Optimizer::run`].
+pub fn observed(optimizer: &mut Optimizer, until: Until, progress: &Progress) -> Result<RunReport, Failure> {
+    let interrupt = Interrupt::listen()?;
+    let report = optimizer.run_observed(until, |step| {
+        if !interrupt.came() {
+            progress.show(step);
+        }
+        interrupt.flow()
+    });
+    progress.clear();
+    Ok(report?)
+}
+
+/// What is written down of a run.
+pub fn record(report: &RunReport) -> RunRecord {
+    let Work { slices_per_class, sweeps } = report.work;
+    RunRecord {
+        slices_per_class,
+        sweeps,
+        ended_early: report.ended != EndReason::Finished,
+        steps: report.steps,
+        seconds: report.elapsed.as_secs_f64(),
+    }
+}
