@@ -14,7 +14,7 @@ fn one_frame_reaches_the_published_texture() {
     let table = Fast::new(tile(1, 64, 1), 2).table().unwrap();
     let seconds = begin.elapsed().as_secs_f64();
     let [alone, filtered, _] = errors(&table, &gaussian(), 256);
-    println!("FAST 64x64x1: filtered error {filtered:.4} in {seconds:.1} s");
+    println!("FAST 64x64x1: filtered error {filtered:.4} in {seconds:.1} s; the released texture has 0.2047");
     assert!(filtered < 1.02 * 0.2047, "{filtered}");
     assert!((alone - 1.0).abs() < 0.02, "{alone}");
 }
