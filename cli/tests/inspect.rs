@@ -138,3 +138,30 @@ fn bad_input_is_one_sentence() {
         assert_eq!(inspect(arguments).status.code(), Some(2), "{arguments:?}");
     }
 }
+
+/// What a histogram of 16 × 16 cells and a radial average hide.
+#[test]
+fn empty_faces_and_a_direction_are_shown() {
+    let home = tempdir().unwrap();
+    let path = home.path().join("table.npy");
+    let extent = Extent::still(32, 32);
+    // Nothing within 0.015 of a face; the rows differ more than the columns.
+    let values = (0..1024).flat_map(|i| {
+        let even = |k: usize| 0.015 + 0.97 * ((k as f32 * 0.618_034).fract());
+        [even(i / 32 * 7 + i % 32 / 8), even(i)]
+    });
+    SampleTable::new(extent, 2, values.collect()).unwrap().save(&path).unwrap();
+    let text = figures(&path, &FEW);
+    for dim in ["dimension 0: density", "dimension 1: density"] {
+        let line = text.lines().find(|line| line.contains(dim)).unwrap_or_else(|| panic!("{dim}: {text}"));
+        // 1024 samples: one standard error of random is √(0.98 / 20.48).
+        assert!(line.contains("0.00 (random 1 ± 0.22) within 0.01,"), "{line}");
+    }
+    let along = text.lines().find(|line| line.contains("power along y over along x")).unwrap();
+    let first: f64 = along.split_whitespace().nth(6).unwrap().parse().unwrap();
+    assert!(first > 1.3, "{along}");
+    // And a table of white noise has neither.
+    let (_home, path) = table([1, 32, 32, 1], 2);
+    let text = figures(&path, &["--integrands", "32", "--bound-slices", "64"]);
+    assert!(!text.contains("within 0.01,") || !text.contains("0.00 (random"), "{text}");
+}

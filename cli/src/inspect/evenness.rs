@@ -1,6 +1,7 @@
 //! How evenly all samples of a table fill a square, or an interval.
 
-use fsot::{SampleTable, metrics::Histogram, metrics::MeasureError};
+use fsot::SampleTable;
+use fsot::metrics::{Histogram, Marginal, MeasureError};
 
 /// Counts of samples in equal cells.
 pub struct Evenness {
@@ -36,10 +37,8 @@ impl Evenness {
             });
         }
         let mean = samples as f64 / per_side as f64;
-        let mut counts = vec![0.0; per_side];
-        for sample in table.values().chunks_exact(table.dims()) {
-            counts[(f64::from(sample[dims[0]]) * per_side as f64) as usize] += 1.0 / mean;
-        }
+        let marginal = Marginal::measure(table, dims[0], per_side)?;
+        let counts: Vec<f64> = marginal.counts.iter().map(|&count| count as f64 / mean).collect();
         let squares: f64 = counts.iter().map(|count| (count - 1.0).powi(2)).sum();
         let spread = squares * mean / (per_side - 1) as f64;
         let corners = vec![counts[0], counts[per_side - 1]];

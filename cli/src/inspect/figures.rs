@@ -4,7 +4,9 @@ use std::path::Path;
 
 use fsot::config::DimensionGroup;
 use fsot::files::{BoundEstimate, Metadata, TableError};
-use fsot::metrics::{Bias, Bound, Discrepancy, Estimate, FilteredError, Integrands, Ratios, Spectra};
+use fsot::metrics::{
+    Bias, Bound, Discrepancy, Estimate, FaceDensity, FilteredError, Integrands, Marginal, Ratios, Spectra,
+};
 use fsot::{Config, Extent, Objective};
 use serde_json::{Map, Value, json};
 
@@ -14,6 +16,9 @@ use crate::Failure;
 
 /// Cycles per pixel below which a frequency counts as low; the default filter halves the power at 0.09.
 pub const LOW: f64 = 0.1;
+
+/// Bins of a single dimension.
+pub const BINS: usize = 64;
 
 /// Pairs of samples whose comparison takes some ten seconds.
 const MOST_PAIRS: u64 = 10_000_000_000;
@@ -27,6 +32,8 @@ pub struct GroupFigures {
     pub bias: Bias,
     /// Of the first two dimensions.
     pub evenness: Evenness,
+    /// Of each dimension of the group.
+    pub marginals: Vec<Marginal>,
     /// As a ratio to white noise; left out where it would take too long.
     pub discrepancy: Option<f64>,
     pub samples_per_frame: u64,
@@ -43,6 +50,8 @@ impl GroupFigures {
         let errors = FilteredError::measure(table, &dims, &integrands, kernel)?;
         let bias = Bias::measure(table, &dims, &integrands)?;
         let evenness = Evenness::new(table, &dims[..dims.len().min(2)])?;
+        let marginals = dims.iter().map(|&dim| Marginal::measure(table, dim, BINS));
+        let marginals = marginals.collect::<Result<_, _>>()?;
         let per_frame = (extent.samples() / extent.frames) as u64;
         let pairs = per_frame.saturating_mul(per_frame).saturating_mul((extent.frames * dims.len()) as u64);
         let discrepancy = match pairs {
@@ -58,6 +67,7 @@ impl GroupFigures {
             errors,
             bias,
             evenness,
+            marginals,
             discrepancy,
             spectra,
             low,
@@ -65,7 +75,7 @@ impl GroupFigures {
     }
 
     fn json(&self) -> Value {
-        let Self { dims, animated, errors, bias, evenness, discrepancy, low, .. } = self;
+        let Self { dims, animated, errors, bias, evenness, marginals, discrepancy, spectra, low, .. } = self;
         let of_frames = |figure: &Ratios| animated.then(|| ratios(figure));
         let histogram = (dims.len() <= 2 && evenness.per_side > 1).then(|| {
             let [emptiest, fullest] = evenness.extremes();
@@ -90,8 +100,10 @@ impl GroupFigures {
                 "pixel": ratios(&bias.pixel),
             },
             "histogram": histogram,
+            "marginals": marginals.iter().map(marginal).collect::<Vec<_>>(),
             "squared_l2_discrepancy": discrepancy,
             "power_at_low_frequencies": low,
+            "power_along_y_over_along_x": spectra.anisotropy().map(|ring| ring.along_y_over_along_x),
         })
     }
 }
@@ -131,6 +143,13 @@ pub fn json(
         "bound": bound,
         "page": page.map(|page| page.display().to_string()),
     })
+}
+
+fn marginal(marginal: &Marginal) -> Value {
+    let faces = marginal.faces.map(|FaceDensity { within, density, standard_error }| {
+        json!({ "within": within, "density": density, "standard_error_of_random": standard_error })
+    });
+    json!({ "counts": marginal.counts, "faces": faces, "zeros": marginal.zeros })
 }
 
 fn ratios(ratios: &Ratios) -> Value {

@@ -4,12 +4,12 @@ use std::io::{self, Write};
 
 use fsot::files::{BoundEstimate, Metadata, TableError};
 use fsot::kernel::TemporalKernel;
-use fsot::metrics::Ratios;
+use fsot::metrics::{Marginal, Ratios};
 use fsot::{Extent, SampleTable};
 
 use super::Inspection;
 use super::evenness::Evenness;
-use super::figures::{GroupFigures, LOW};
+use super::figures::{BINS, GroupFigures, LOW};
 
 pub fn header(out: &mut dyn Write, inspection: &Inspection) -> io::Result<()> {
     writeln!(out, "{}: {}", inspection.name, shape(&inspection.table))?;
@@ -88,7 +88,7 @@ pub fn key(out: &mut dyn Write) -> io::Result<()> {
 
 /// All figures of a dimension group.
 pub fn group(out: &mut dyn Write, figures: &GroupFigures) -> io::Result<()> {
-    let GroupFigures { dims, errors, bias, evenness, discrepancy, low, .. } = figures;
+    let GroupFigures { dims, errors, bias, evenness, marginals, discrepancy, spectra, low, .. } = figures;
     let title = match dims.as_slice() {
         [one] => format!("dimension {one}"),
         [a, b] => format!("dimensions {a}, {b}"),
@@ -111,6 +111,9 @@ pub fn group(out: &mut dyn Write, figures: &GroupFigures) -> io::Result<()> {
     if dims.len() <= 2 {
         write_evenness(out, evenness)?;
     }
+    if dims.len() <= 2 {
+        dims.iter().zip(marginals).try_for_each(|(dim, marginal)| write_marginal(out, *dim, marginal))?;
+    }
     match discrepancy {
         Some(ratio) => writeln!(out, "  squared L2 discrepancy of a frame {ratio:.4}")?,
         None => writeln!(
@@ -120,9 +123,34 @@ pub fn group(out: &mut dyn Write, figures: &GroupFigures) -> io::Result<()> {
         )?,
     }
     match low {
-        Some(low) => writeln!(out, "  power at low frequencies (to {LOW} cycles per pixel) {low:.4}"),
-        None => writeln!(out, "  power at low frequencies: none so low in a tile of this size"),
+        Some(low) => writeln!(out, "  power at low frequencies (to {LOW} cycles per pixel) {low:.4}")?,
+        None => writeln!(out, "  power at low frequencies: none so low in a tile of this size")?,
     }
+    let rings = spectra.anisotropy();
+    if rings.iter().all(|ring| ring.along_y_over_along_x.is_finite()) {
+        write!(out, "  power along y over along x:")?;
+        for ring in rings {
+            write!(out, " {:.2} ({}-{})", ring.along_y_over_along_x, ring.from, ring.to)?;
+        }
+        writeln!(out, " cycles per pixel")?;
+    }
+    Ok(())
+}
+
+/// A line on a single dimension: its faces, and its bins.
+fn write_marginal(out: &mut dyn Write, dim: usize, marginal: &Marginal) -> io::Result<()> {
+    write!(out, "  dimension {dim}: density")?;
+    for face in marginal.faces {
+        let error = face.standard_error;
+        write!(out, " {:.2} (random 1 ± {error:.2}) within {}", face.density, face.within)?;
+        write!(out, "{}", if face.within < 0.02 { "," } else { " of a face" })?;
+    }
+    let [emptiest, fullest] = marginal.extremes();
+    write!(out, "; {BINS} bins {emptiest:.2} to {fullest:.2}, outermost {:.2}", marginal.ends())?;
+    if marginal.zeros > 0 {
+        write!(out, "; {} values are 0", marginal.zeros)?;
+    }
+    writeln!(out)
 }
 
 fn write_ratios(out: &mut dyn Write, label: &str, ratios: &Ratios) -> io::Result<()> {
