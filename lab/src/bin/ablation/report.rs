@@ -23,10 +23,10 @@ fn write_all(
     writeln!(text, "Written by `{COMMAND}`; {machine}.\n")?;
     writeln!(
         text,
-        "One thing at a time is changed from the defaults, at equal slices where that does not change the cost of \
-         a slice, else at equal time (that of the defaults, as told by short runs of both right before). \
-         *Slices* are per pixel and frame; *filtered* error, *bound* and *bias* are ratios to white noise, as in \
-         the README.\n"
+        "One thing at a time is changed from the defaults, at equal slices where that does not change \
+         the cost of a slice, else at equal time (that of the defaults, as told by short runs of both right \
+         before). *Slices* are per pixel and frame; *filtered* error, *bound* and *bias* are ratios to white \
+         noise, as in the README.\n"
     )?;
     for case in cases {
         writeln!(

@@ -7,7 +7,8 @@
 //! Renders the validation scenes with every sampler at 1, 4, 9 and 16 samples per pixel and prints one table
 //! of errors as ratios to white noise: after the eye's spatial filter, after its spatio-temporal filter,
 //! after temporal antialiasing, after a denoiser. Writes all figures as `lecture.csv`, and contact sheets
-//! (noise, spectrum) as PNG. Three minutes on two idle cores; `--quick` shows in seconds that everything works.
+//! (noise, spectrum) as PNG. Three minutes on two idle cores; `--quick` shows in seconds that everything
+//! works.
 
 mod contenders;
 mod measure;

@@ -33,8 +33,8 @@ pub fn print(Outcome { case, ours, published }: &Outcome) {
     print!("The published loop, {pace:.1} µs per slice on {} threads", rayon::current_num_threads());
     match case.published_program_us {
         Some(program) => println!(
-            " (the published program: {program} µs on two; at that pace the speed-ups below are {:.2} times as \
-             large).",
+            " (the published program: {program} µs on two; at that pace the speed-ups below are {:.2} times \
+             as large).",
             program / pace
         ),
         None => println!("."),
