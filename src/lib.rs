@@ -101,7 +101,6 @@ mod named;
 pub mod objective;
 pub mod optimizer;
 pub mod random;
-#[doc(hidden)]
 mod simd;
 mod slices;
 mod sweeps;

@@ -6,7 +6,8 @@ use crate::classes::{Classes, LabelSet, PrefixLengths, PrefixOf};
 use crate::config::{Config, Descent, Role, Schedule, Term};
 use crate::table::extent::Extent;
 #[cfg(feature = "image")]
-use crate::targets::{Density, Inks, Target};
+use crate::targets::Inks;
+use crate::targets::{Density, Target};
 
 /// Which sets of labels are classes of their own.
 ///
