@@ -40,6 +40,7 @@
 //! | [`Seconds`](Until::Seconds) | the best table in a given time; [`RunReport::work`] makes it again |
 //! | [`Sweeps`](Until::Sweeps) | tables on intervals: soonest at any error; 20 to 100 make a good one |
 //! | [`SlicesPerClass`](Until::SlicesPerClass) | point sets, toruses, and whatever has no closed form |
+//! | [`Epochs`](Until::Epochs) | the same, by visits of every pixel |
 //! | [`Work`](Until::Work) | slices, then sweeps: the lowest bound |
 //! | [`Converged`](Until::Converged) | slices, until they bring little more |
 //!

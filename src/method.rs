@@ -1,4 +1,5 @@
-//! The mathematics: what is minimised, in which symbols, and where it deviates from the papers.
+//! The mathematics: what is minimised, in which symbols, and where it deviates from the papers: Salaün et al.
+//! 2022[^salaun] for the objective, Korać et al. 2023[^korac] for filters in time.
 //!
 //! # What it minimises
 //!

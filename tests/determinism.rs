@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 
 use fsot::classes::PrefixLengths;
 use fsot::config::{Descent, EndReason, LabelSubsets, Role, Work};
+use fsot::objective::ValueAndGradient;
 use fsot::optimizer::{SliceStep, StepReport};
 use fsot::{Config, Extent, Optimizer, SampleTable, Until, metrics};
 
@@ -122,9 +123,9 @@ fn gradients_do_not_depend_on_threads() {
     let run = |threads| {
         with_threads(threads, || optimizer.objective().value_and_gradient(&points, &slices).unwrap())
     };
-    let (value, gradient) = run(1);
+    let ValueAndGradient { value, gradient } = run(1);
     for threads in [2, 3, 8] {
-        let (again, other) = run(threads);
+        let ValueAndGradient { value: again, gradient: other } = run(threads);
         assert_eq!(value.to_bits(), again.to_bits());
         assert!(gradient.iter().zip(&other).all(|(a, b)| a.to_bits() == b.to_bits()));
     }

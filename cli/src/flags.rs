@@ -4,6 +4,9 @@ use clap::Args;
 
 use crate::Failure;
 
+/// More are a slip.
+const MOST_THREADS: usize = 1024;
+
 /// Threads, and what is printed.
 #[derive(Args, Clone, Debug)]
 pub struct Shared {
@@ -26,7 +29,16 @@ impl Shared {
     pub(crate) fn start_threads(&self) -> Result<(), Failure> {
         match self.threads {
             0 => Ok(()),
-            threads => Ok(rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?),
+            1..=MOST_THREADS => {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads);
+                pool.build_global().map_err(|error| {
+                    format!("cannot start {} threads: {error}; give fewer --threads", self.threads).into()
+                })
+            }
+            threads => {
+                Err(format!("--threads is {threads}: give at most {MOST_THREADS}, or 0 for every core")
+                    .into())
+            }
         }
     }
 }

@@ -1,7 +1,5 @@
 //! A run of the optimiser under a progress bar, which a signal ends early.
 
-use fsot::config::{EndReason, Work};
-use fsot::files::RunRecord;
 use fsot::{Optimizer, RunReport, Until};
 
 use crate::Failure;
@@ -22,16 +20,4 @@ pub fn observed(optimizer: &mut Optimizer, until: Until, progress: &Progress) ->
     });
     progress.clear();
     Ok(report?)
-}
-
-/// What is written down of a run.
-pub fn record(report: &RunReport) -> RunRecord {
-    let Work { slices_per_class, sweeps } = report.work;
-    RunRecord {
-        slices_per_class,
-        sweeps,
-        ended_early: report.ended != EndReason::Finished,
-        steps: report.steps,
-        seconds: report.elapsed.as_secs_f64(),
-    }
 }

@@ -20,6 +20,7 @@ use crate::table::extent::Extent;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum PrefixOf {
     /// The table, in its own order: a progressive sequence.
     Table,
@@ -40,6 +41,7 @@ pub enum PrefixOf {
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum PrefixLengths {
     /// All of them: 1, 2, 3, …. A step visits a random few.
     Every,

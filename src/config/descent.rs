@@ -21,6 +21,7 @@ use crate::error::RangeError;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Descent {
     /// `x ← x + rate · pull`: a fixed point iteration towards the barycentre of the targets (`E[theta thetaᵀ]
     /// = I / d`), with `rate = 1` as its natural step and nothing to tune.
@@ -51,6 +52,7 @@ pub enum Descent {
 /// A positive number, at most 1e6, that changes over a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "shape", rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Schedule {
     /// Stays as it is.
     Constant {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::classes::{Classes, LabelSet, PrefixLengths, PrefixOf};
 use crate::config::{Config, Descent, Role, Schedule, Term};
-use crate::table::extent::Extent;
+use crate::table::extent::{Extent, MOST_VALUES};
 #[cfg(feature = "image")]
 use crate::targets::Inks;
 use crate::targets::{Density, Target};
@@ -22,6 +22,7 @@ use crate::targets::{Density, Target};
 /// # Ok::<(), fsot::ConfigError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum LabelSubsets {
     /// Each label, and all of them together.
     EachAndAll,
@@ -69,7 +70,9 @@ impl Config {
     ///
     /// Two labels of 512 points: `Config::classes(&[512, 512], 2, &LabelSubsets::EachAndAll)`.
     pub fn classes(counts: &[usize], dims: usize, subsets: &LabelSubsets) -> Self {
-        let labels = labels(counts);
+        let count = counts.iter().fold(0, |sum: usize, &count| sum.saturating_add(count));
+        // More points than a table holds are refused when the configuration is used, and not listed here.
+        let labels = if count <= MOST_VALUES { labels(counts) } else { [].into() };
         let size = |set: &Vec<u32>| -> f64 {
             let count = |label: &u32| counts.get(*label as usize).copied().unwrap_or(0) as f64;
             set.iter().map(count).sum()
@@ -77,7 +80,7 @@ impl Config {
         let sets = subsets.list(counts.len());
         let weighed = sets.into_iter().map(|set| LabelSet { weight: weight_of(size(&set)), labels: set });
         let classes = Classes::Labelled { labels: labels.clone(), subsets: weighed.collect() };
-        Self::point_set(labels.len(), dims, vec![whole(classes, Target::UniformCube, dims)])
+        Self::point_set(count, dims, vec![whole(classes, Target::UniformCube, dims)])
     }
 
     /// Stippling: as many points as are denser where the picture is.

@@ -19,6 +19,7 @@ use crate::table::extent::Extent;
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum SpatialKernel {
     /// `exp(-r² / sigma_px²)` with `r` in pixels; `sigma_px` in `(0, 1e6]`. The papers use 2.1.
     Gaussian {

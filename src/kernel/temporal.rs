@@ -18,6 +18,7 @@ use crate::error::KernelError;
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum TemporalKernel {
     /// The current frame alone.
     None,

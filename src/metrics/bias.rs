@@ -23,6 +23,7 @@ use super::samples::Samples;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Bias {
     /// All samples of the table together.
     pub table: Ratios,

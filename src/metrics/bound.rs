@@ -26,6 +26,7 @@ use crate::targets::Target;
 /// # Ok::<(), fsot::metrics::MeasureError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Bound {
     /// The whole objective: the terms' bounds, averaged with their weights.
     pub total: BoundEstimate,

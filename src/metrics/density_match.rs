@@ -18,6 +18,7 @@ use crate::targets::Density;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct DensityMatch {
     /// Pearson's correlation of both blurred pictures over their pixels; 1 for a constant picture matched by
     /// a constant.

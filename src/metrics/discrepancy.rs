@@ -23,6 +23,7 @@ use super::samples::Samples;
 /// # Ok::<(), fsot::metrics::MeasureError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Discrepancy {
     /// `T²`, in `[0, 1]`.
     pub squared: f64,

@@ -20,6 +20,7 @@ use crate::table::extent::Extent;
 /// # Ok::<(), fsot::metrics::MeasureError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ErrorImage {
     /// The errors, `[frame, y, x]`.
     pub errors: Array3<f64>,

@@ -30,6 +30,7 @@ use crate::table::extent::Extent;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct FilteredError {
     /// Without filter: the error of single pixels. 1 for any table that has one sample per pixel and fills
     /// the cube uniformly.

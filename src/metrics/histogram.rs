@@ -15,6 +15,7 @@ use crate::error::RangeError;
 /// # Ok::<(), fsot::metrics::MeasureError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Histogram {
     /// Samples per cell, row by row: cell `(i, j)` at `j · k + i`, `i` along the first dimension.
     pub counts: Vec<u64>,

@@ -20,6 +20,7 @@ use crate::error::RangeError;
 /// # Ok::<(), fsot::metrics::MeasureError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Marginal {
     /// Samples per bin, from 0 to 1.
     pub counts: Vec<u64>,
@@ -42,6 +43,7 @@ pub struct Marginal {
 /// # Ok::<(), fsot::metrics::MeasureError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct FaceDensity {
     /// Thickness of the slabs: values below it, or from 1 less it on.
     pub within: f64,

@@ -18,6 +18,7 @@ use super::integrands::Integrands;
 /// # Ok::<(), fsot::metrics::MeasureError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Estimate {
     /// The mean.
     pub mean: f64,
@@ -41,6 +42,7 @@ pub struct Estimate {
 /// # Ok::<(), fsot::metrics::MeasureError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Ratios {
     /// Mean of every family, in the order of [`Integrands::families`].
     pub families: Vec<FamilyRatio>,
@@ -61,6 +63,7 @@ pub struct Ratios {
 /// # Ok::<(), fsot::metrics::MeasureError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct FamilyRatio {
     /// Name of the family.
     pub name: Arc<str>,

@@ -22,6 +22,7 @@ use super::samples::Samples;
 /// # Ok::<(), fsot::metrics::MeasureError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SetError {
     /// 1 is random, 0 is exact.
     pub ratios: Ratios,

@@ -27,6 +27,7 @@ use crate::targets::Target;
 /// # Ok::<(), fsot::metrics::MeasureError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SlicedDistance {
     /// Root of the mean over directions of the squared 2-Wasserstein distance of the projections.
     pub w2: f64,

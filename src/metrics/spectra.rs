@@ -30,6 +30,7 @@ use super::samples::Samples;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Spectra {
     /// Power over `[ky, kx]` (height × width), averaged over frames.
     pub xy: Array2<f64>,
@@ -51,6 +52,7 @@ pub struct Spectra {
 /// assert!(last.power > 63.9);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct RadialBin {
     /// Mean radius of the ring's frequencies, in cycles per pixel.
     pub frequency: f64,
@@ -72,6 +74,7 @@ pub struct RadialBin {
 /// assert!(ring.along_y_over_along_x > 1e6);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct AnisotropyRing {
     /// Least radius of the ring, in cycles per pixel.
     pub from: f64,

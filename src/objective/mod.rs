@@ -7,7 +7,7 @@ mod slice;
 mod start;
 
 use self::plan::{PlannedTerm, classes, share_work};
-pub use self::slice::Slice;
+pub use self::slice::{Slice, ValueAndGradient};
 use crate::classes::{Classes, Demand, Wanted};
 use crate::config::{Config, Role, Term};
 use crate::directions::banks::Banks;
@@ -29,8 +29,8 @@ use crate::table::extent::Extent;
 ///
 /// let objective = Objective::new(&Config::new(Extent::still(8, 8), 2))?;
 /// let points = vec![0.5; 128];
-/// let (value, gradient) = objective.cramer(&points)?;
-/// assert!(value > 0.0 && gradient.iter().all(|slope| slope.is_finite()));
+/// let found = objective.cramer(&points)?;
+/// assert!(found.value > 0.0 && found.gradient.iter().all(|slope| slope.is_finite()));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -57,8 +57,8 @@ impl Objective {
     /// let objective = Objective::new(&Config::new(Extent::still(16, 16), 2))?;
     /// let points: Vec<f64> = (0..512).map(|i| f64::from(i) / 512.0).collect();
     /// let slices = objective.draw(7, 0, Role::Descend);
-    /// let (value, gradient) = objective.value_and_gradient(&points, &slices)?;
-    /// assert!(value > 0.0 && gradient.len() == points.len());
+    /// let found = objective.value_and_gradient(&points, &slices)?;
+    /// assert!(found.value > 0.0 && found.gradient.len() == points.len());
     /// # Ok::<(), fsot::objective::ObjectiveError>(())
     /// ```
     pub fn new(config: &Config) -> Result<Self, ConfigError> {

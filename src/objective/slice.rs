@@ -16,8 +16,8 @@ use crate::table::domain::Domain;
 /// let objective = Objective::new(&Config::new(Extent::still(2, 2), 1))?;
 /// // All four samples of the first pixel's filter, along their only dimension.
 /// let slice = Slice { term: 0, member: 0, level: 0.0, direction: vec![1.0], cut: vec![0.0] };
-/// let (value, gradient) = objective.value_and_gradient(&[0.1, 0.4, 0.6, 0.9], &[slice])?;
-/// assert!(value > 0.0 && gradient.len() == 4);
+/// let found = objective.value_and_gradient(&[0.1, 0.4, 0.6, 0.9], &[slice])?;
+/// assert!(found.value > 0.0 && found.gradient.len() == 4);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -44,6 +44,24 @@ struct Moved {
     displacements: Vec<f64>,
 }
 
+/// What an objective is at some points, and how it changes from there.
+///
+/// ```
+/// use fsot::{Config, Extent, Objective};
+///
+/// let objective = Objective::new(&Config::new(Extent::still(4, 4), 1))?;
+/// let found = objective.cramer(&[0.5; 16])?;
+/// assert!(found.value > 0.0 && found.gradient.len() == 16);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct ValueAndGradient {
+    /// The value.
+    pub value: f64,
+    /// Its derivative with respect to every coordinate, in the order of the points.
+    pub gradient: Vec<f64>,
+}
+
 impl Objective {
     /// Mean over `slices` of `(n / N) W2²`, times the weight of the class, and its gradient with respect to
     /// every coordinate, in `f64`.
@@ -59,7 +77,7 @@ impl Objective {
         &self,
         points: &[f64],
         slices: &[Slice],
-    ) -> Result<(f64, Vec<f64>), ObjectiveError> {
+    ) -> Result<ValueAndGradient, ObjectiveError> {
         self.check_points(points)?;
         for (index, slice) in slices.iter().enumerate() {
             self.check_slice(slice).map_err(|problem| ObjectiveError::Slice { slice: index, problem })?;
@@ -81,7 +99,7 @@ impl Objective {
                 }
             }
         }
-        Ok((value, gradient))
+        Ok(ValueAndGradient { value, gradient })
     }
 
     /// The value alone, of points and slices that are known to fit.

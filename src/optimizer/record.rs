@@ -21,17 +21,23 @@ impl Optimizer {
     pub fn metadata(&self, report: &RunReport) -> Metadata {
         let configuration = serde_json::to_value(&self.config).expect("a configuration is plain data");
         let taps = |term| Some(KernelTaps { term, taps: self.objective.taps(term)?.to_vec() });
-        let Work { slices_per_class, sweeps } = report.work;
         Metadata {
             kernels: (0..self.objective.terms.len()).filter_map(taps).collect(),
-            run: RunRecord {
-                slices_per_class,
-                sweeps,
-                ended_early: report.ended != EndReason::Finished,
-                steps: report.steps,
-                seconds: report.elapsed.as_secs_f64(),
-            },
+            run: report.into(),
             ..Metadata::new(self.config.extent, self.config.dims, self.config.seed, configuration)
+        }
+    }
+}
+
+impl From<&RunReport> for RunRecord {
+    fn from(report: &RunReport) -> Self {
+        let Work { slices_per_class, sweeps } = report.work;
+        Self {
+            slices_per_class,
+            sweeps,
+            ended_early: report.ended != EndReason::Finished,
+            steps: report.steps,
+            seconds: report.elapsed.as_secs_f64(),
         }
     }
 }

@@ -164,7 +164,7 @@ fn compare(objective: &Objective, seed: u64, step: u64, points: &[f32], slices: 
     assert_eq!(pull.slices, slices.len() as u64);
 
     let wide: Vec<f64> = points.iter().map(|&point| point.into()).collect();
-    let (_, gradient) = objective.value_and_gradient(&wide, slices).unwrap();
+    let gradient = objective.value_and_gradient(&wide, slices).unwrap().gradient;
     // The engine neither averages over slices nor divides by the table; it descends dims times as far.
     let dims = objective.terms[0].spec.dims.len();
     let factor = -0.5 * (dims * slices.len() * objective.extent.samples()) as f64;

@@ -7,8 +7,8 @@ use super::mean_projection;
 use crate::config::Role;
 use crate::error::ObjectiveError;
 use crate::kernel::autocorrelation;
-use crate::objective::Objective;
 use crate::objective::plan::PlannedTerm;
+use crate::objective::{Objective, ValueAndGradient};
 
 impl Objective {
     /// All slices at once: the squared sliced Cramér distance between filtered samples and target, meant over
@@ -23,7 +23,7 @@ impl Objective {
     /// # Errors
     /// A term without a closed form: one whose classes are not a lattice's, or that sees a torus. A list of
     /// another length than the table's, or values outside `[0, 1)`.
-    pub fn cramer(&self, points: &[f64]) -> Result<(f64, Vec<f64>), ObjectiveError> {
+    pub fn cramer(&self, points: &[f64]) -> Result<ValueAndGradient, ObjectiveError> {
         super::check(self)?;
         self.check_points(points)?;
         Ok(value_and_gradient(self, points))
@@ -32,7 +32,7 @@ impl Objective {
 
 /// Mean over the descended terms by weight, and over the pixels (by the square of what their filter holds),
 /// of the squared sliced Cramér distance; and its gradient.
-fn value_and_gradient(objective: &Objective, points: &[f64]) -> (f64, Vec<f64>) {
+fn value_and_gradient(objective: &Objective, points: &[f64]) -> ValueAndGradient {
     let (mut value, mut gradient) = (0.0, vec![0.0; points.len()]);
     let terms = || objective.terms.iter().filter(|term| term.spec.role == Role::Descend);
     let weights: f64 = terms().map(|term| term.spec.weight).sum();
@@ -42,7 +42,7 @@ fn value_and_gradient(objective: &Objective, points: &[f64]) -> (f64, Vec<f64>) 
                 gradient[coordinate] += term.spec.weight / weights * slope;
             });
     }
-    (value, gradient)
+    ValueAndGradient { value, gradient }
 }
 
 /// The value of one term; its gradient goes to `add(coordinate, slope)`.

@@ -78,7 +78,7 @@ fn the_closed_form_is_the_mean_over_slices() {
             mean += cramer_distance(&samples, &law) / (f64::from(angles) * EXTENT.sites() as f64);
         }
     }
-    let (value, _) = objective.cramer(&points).unwrap();
+    let value = objective.cramer(&points).unwrap().value;
     // 96 angles and 2,000 cells are good for three digits; twice as many of both halve the difference.
     assert!((value / mean - 1.0).abs() < 1e-3, "{value} {mean}");
 }
@@ -88,13 +88,13 @@ fn the_gradient_is_the_slope_of_the_value() {
     for (dims, groups) in [(2, &[&[0, 1][..]][..]), (4, &[&[0][..], &[3, 1, 2], &[0, 1, 2, 3]])] {
         let objective = objective(dims, groups);
         let points = widened(&points(dims));
-        let (_, gradient) = objective.cramer(&points).unwrap();
+        let gradient = objective.cramer(&points).unwrap().gradient;
         let largest = gradient.iter().copied().map(f64::abs).fold(0.0, f64::max);
         for coordinate in (0..points.len()).step_by(151) {
             let at = |by: f64| {
                 let mut moved = points.clone();
                 moved[coordinate] += by;
-                objective.cramer(&moved).unwrap().0
+                objective.cramer(&moved).unwrap().value
             };
             let slope = (at(1e-5) - at(-1e-5)) / 2e-5;
             // 1e-16 / 1e-5 of rounding, and kinks of |x| where samples are as close as the step.
@@ -122,7 +122,7 @@ fn pulls(objective: &Objective, points: &[f32]) -> Vec<f32> {
 fn assert_pull_is_gradient(objective: &Objective, natural: f64) {
     let (extent, dims) = (objective.extent(), objective.dims());
     let points = random::uniforms(5, extent.samples() * dims);
-    let (_, gradient) = objective.cramer(&widened(&points)).unwrap();
+    let gradient = objective.cramer(&widened(&points)).unwrap().gradient;
     let found = pulls(objective, &points);
     // gradient = c_d T (∇φ − …) / (P W²), with T = W W_1 and W = spp W_1; pull = −natural (∇φ − …).
     let scale = -natural * extent.samples() as f64 / mean_projection(dims);
@@ -199,7 +199,7 @@ fn a_demand_leaves_out_samples() {
         Objective::for_demand(&Config::new(EXTENT, 2).with_terms(terms(&[&[0, 1]])), &demand).unwrap();
     let start = points(2);
     let mut moved = start.clone();
-    let (_, gradient) = objective.cramer(&widened(&start)).unwrap();
+    let gradient = objective.cramer(&widened(&start)).unwrap().gradient;
     let found = pulls(&objective, &moved);
     for (coordinate, (&slope, &pull)) in gradient.iter().zip(&found).enumerate() {
         let wanted = pixels[coordinate / 4];

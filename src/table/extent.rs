@@ -31,6 +31,9 @@ pub struct Extent {
 /// Most dimensions of a sample: directions take time and memory by the square of them and more.
 pub const MOST_DIMS: usize = 64;
 
+/// Most values of a table: half of what 32 bits number, so that an offset may be added before it wraps.
+pub(crate) const MOST_VALUES: usize = i32::MAX as usize;
+
 /// Position of a pixel of one frame.
 ///
 /// ```
@@ -129,8 +132,7 @@ impl Extent {
         if dims > MOST_DIMS {
             return Err(ExtentError::TooManyDims { dims, most: MOST_DIMS });
         }
-        // Half of what 32 bits number, so that an offset may be added before it wraps.
-        if values > i32::MAX as u64 {
+        if values > MOST_VALUES as u64 {
             return Err(ExtentError::TooLarge { values });
         }
         Ok(())

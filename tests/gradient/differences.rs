@@ -134,7 +134,7 @@ impl Case {
     }
 
     fn value(&self, points: &[f64]) -> f64 {
-        self.objective.value_and_gradient(points, &self.slices).unwrap().0
+        self.objective.value_and_gradient(points, &self.slices).unwrap().value
     }
 
     /// Central difference with respect to one coordinate; a torus wraps.
@@ -162,7 +162,7 @@ proptest! {
         let case = build(&raw);
         let gap = case.smooth();
         prop_assume!(gap > 1e-7);
-        let (_, gradient) = case.objective.value_and_gradient(&case.points, &case.slices).unwrap();
+        let gradient = case.objective.value_and_gradient(&case.points, &case.slices).unwrap().gradient;
         let largest = gradient.iter().fold(0.0_f64, |largest, g| largest.max(g.abs()));
         prop_assert!(largest > 0.0);
         for (coordinate, &analytic) in gradient.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use fsot::classes::{Classes, FilterForm};
 use fsot::config::Domain;
-use fsot::objective::{ObjectiveError, Slice, SliceError};
+use fsot::objective::{ObjectiveError, Slice, SliceError, ValueAndGradient};
 use fsot::{Extent, Objective};
 
 use crate::{lattice, objective, term};
@@ -108,10 +108,10 @@ fn odd_slices_are_served() {
     let points: Vec<f64> = (0..72).map(|i| f64::from(i) / 72.0).collect();
     let objective = planned();
     let zero = Slice { direction: vec![0.0; 2], ..good() };
-    let (value, gradient) = objective.value_and_gradient(&points, &[zero]).unwrap();
+    let ValueAndGradient { value, gradient } = objective.value_and_gradient(&points, &[zero]).unwrap();
     assert_eq!(value, 0.0);
     assert!(gradient.iter().all(|&g| g == 0.0));
     let [near, far] = [[0.25, 0.5], [-2.75, 3.5]].map(|cut| Slice { cut: cut.to_vec(), ..good() });
     let [near, far] = [near, far].map(|slice| objective.value_and_gradient(&points, &[slice]).unwrap());
-    assert!((near.0 - far.0).abs() < 1e-14, "{near:?} {far:?}");
+    assert!((near.value - far.value).abs() < 1e-14, "{near:?} {far:?}");
 }

@@ -3,7 +3,7 @@
 use fsot::Extent;
 use fsot::classes::{Classes, FilterForm};
 use fsot::config::Domain;
-use fsot::objective::Slice;
+use fsot::objective::{Slice, ValueAndGradient};
 
 use crate::{lattice, objective, spread, term, unit};
 
@@ -42,13 +42,14 @@ fn tied() -> Vec<f64> {
 fn tied_samples_have_one_finite_gradient() {
     let objective = planned();
     for direction in [[0.0, 1.0], [0.6, -0.8], [1.0, 0.0]] {
-        let (value, gradient) = objective.value_and_gradient(&tied(), &slices(direction)).unwrap();
+        let ValueAndGradient { value, gradient } =
+            objective.value_and_gradient(&tied(), &slices(direction)).unwrap();
         assert!(value > 0.0 && gradient.iter().all(|g| g.is_finite()), "{value} {gradient:?}");
         for threads in [1, 2, 3] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             let again = pool.install(|| objective.value_and_gradient(&tied(), &slices(direction)).unwrap());
-            assert_eq!(again.0.to_bits(), value.to_bits());
-            assert!(again.1.iter().zip(&gradient).all(|(a, b)| a.to_bits() == b.to_bits()));
+            assert_eq!(again.value.to_bits(), value.to_bits());
+            assert!(again.gradient.iter().zip(&gradient).all(|(a, b)| a.to_bits() == b.to_bits()));
         }
     }
 }
@@ -58,13 +59,13 @@ fn tied_samples_have_one_finite_gradient() {
 #[test]
 fn duplicates_that_move_together_have_a_derivative() {
     let (objective, slices) = (planned(), slices([0.6, -0.8]));
-    let (_, gradient) = objective.value_and_gradient(&tied(), &slices).unwrap();
+    let gradient = objective.value_and_gradient(&tied(), &slices).unwrap().gradient;
     for dim in 0..2 {
         let at = |by: f64| {
             let mut points = tied();
             points[6 + dim] += by;
             points[10 + dim] += by;
-            objective.value_and_gradient(&points, &slices).unwrap().0
+            objective.value_and_gradient(&points, &slices).unwrap().value
         };
         let numeric = (at(1e-6) - at(-1e-6)) / 2e-6;
         let analytic = gradient[6 + dim] + gradient[10 + dim];
@@ -83,9 +84,9 @@ fn a_tie_is_a_corner_and_not_a_jump() {
         points[6] += by;
         objective.value_and_gradient(&points, slices).unwrap()
     };
-    let (value, gradient) = at(0.0);
+    let ValueAndGradient { value, gradient } = at(0.0);
     // A central difference on either side, clear of the corner and of all other samples.
-    let slope = |from: f64, to: f64| (at(to).0 - at(from).0) / (to - from);
+    let slope = |from: f64, to: f64| (at(to).value - at(from).value) / (to - from);
     let (left, right) = (slope(-2e-6, -1e-6), slope(1e-6, 2e-6));
     // The two samples swap neighbouring cells of ninths of the mass: |left - right| = 2/9 · 0.6 · (cell
     // distance).
@@ -96,7 +97,7 @@ fn a_tie_is_a_corner_and_not_a_jump() {
         let slope = 2.0 * left.abs().max(right.abs());
         for by in [by, -by] {
             // 1e-15: rounding of a value of about 0.01.
-            assert!((at(by).0 - value).abs() <= slope * by.abs() + 1e-15, "{by}");
+            assert!((at(by).value - value).abs() <= slope * by.abs() + 1e-15, "{by}");
         }
     }
 }
@@ -107,7 +108,7 @@ fn a_table_of_one_place_is_pulled_as_one() {
     let objective = planned();
     let points = [0.2, 0.7].repeat(9);
     let slices = &slices([1.0, 0.0])[2..3];
-    let (value, gradient) = objective.value_and_gradient(&points, slices).unwrap();
+    let ValueAndGradient { value, gradient } = objective.value_and_gradient(&points, slices).unwrap();
     // ∫ (u − 0.2)² du, and its derivative −2 (1/2 − 0.2).
     assert!((value - (0.8_f64.powi(3) + 0.2_f64.powi(3)) / 3.0).abs() < 1e-14, "{value}");
     let sum: f64 = gradient.iter().step_by(2).sum();

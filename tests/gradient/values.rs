@@ -3,7 +3,7 @@
 use fsot::Extent;
 use fsot::classes::{Classes, FilterForm};
 use fsot::config::Domain;
-use fsot::objective::Slice;
+use fsot::objective::{Slice, ValueAndGradient};
 
 use crate::brute_force::Law;
 use crate::{lattice, objective, spread, term, unit};
@@ -67,7 +67,7 @@ fn the_value_is_that_of_the_definition() {
                     cut: spread(dims, 0.3),
                 })
                 .collect();
-            let (value, _) = objective.value_and_gradient(&points, &slices).unwrap();
+            let value = objective.value_and_gradient(&points, &slices).unwrap().value;
             let expected = slices.iter().map(|slice| by_definition(&points, dims, torus, form, slice));
             let expected = expected.sum::<f64>() / slices.len() as f64;
             // The midpoint rule is good to (cell / 2000)² relative, the crate's law to 5e-9 from five
@@ -87,7 +87,8 @@ fn one_sample_on_the_line() {
     let objective = objective(extent, &[Domain::Interval], &[term(Classes::WholeTable, &[0])]);
     let slice = Slice { term: 0, member: 0, level: 0.5, direction: vec![1.0], cut: vec![0.0] };
     for a in [0.0, 0.25, 0.5, 0.9] {
-        let (value, gradient) = objective.value_and_gradient(&[a], std::slice::from_ref(&slice)).unwrap();
+        let ValueAndGradient { value, gradient } =
+            objective.value_and_gradient(&[a], std::slice::from_ref(&slice)).unwrap();
         assert!((value - ((1.0 - a).powi(3) + a.powi(3)) / 3.0).abs() < 1e-14, "{a}: {value}");
         assert!((gradient[0] - (2.0 * a - 1.0)).abs() < 1e-14, "{a}: {gradient:?}");
     }
@@ -100,7 +101,8 @@ fn two_samples_on_the_line() {
     let extent = Extent { frames: 1, height: 1, width: 2, spp: 2 };
     let objective = objective(extent, &[Domain::Interval], &[term(Classes::PerPixel, &[0])]);
     let slice = Slice { term: 0, member: 1, level: 0.0, direction: vec![1.0], cut: vec![0.0] };
-    let (value, gradient) = objective.value_and_gradient(&[0.1, 0.2, 0.9, 0.4], &[slice]).unwrap();
+    let ValueAndGradient { value, gradient } =
+        objective.value_and_gradient(&[0.1, 0.2, 0.9, 0.4], &[slice]).unwrap();
     // Each cell spreads by (1/2)² / 12 around its mean.
     let expected = 0.5 * (0.5 * (0.15_f64.powi(2) + 0.15_f64.powi(2)) + 1.0 / 48.0);
     assert!((value - expected).abs() < 1e-14, "{value} {expected}");
@@ -113,7 +115,7 @@ fn two_samples_on_the_line() {
 fn no_slices_weigh_nothing() {
     let objective = objective(EXTENT, &[Domain::Torus; 2], &[term(Classes::WholeTable, &[0, 1])]);
     let points = spread(EXTENT.samples() * 2, 0.0);
-    let (value, gradient) = objective.value_and_gradient(&points, &[]).unwrap();
+    let ValueAndGradient { value, gradient } = objective.value_and_gradient(&points, &[]).unwrap();
     assert_eq!(value, 0.0);
     assert_eq!(gradient, vec![0.0; points.len()]);
 }
@@ -133,10 +135,10 @@ fn long_lists_are_means_too() {
         cut: vec![0.0; 2],
     };
     let slices: Vec<Slice> = (0..10_000).map(slice).collect();
-    let (value, gradient) = objective.value_and_gradient(&points, &slices).unwrap();
+    let ValueAndGradient { value, gradient } = objective.value_and_gradient(&points, &slices).unwrap();
     let parts = slices.chunks(2500).map(|part| objective.value_and_gradient(&points, part).unwrap());
     let (mut expected, mut sum) = (0.0, vec![0.0; 12]);
-    for (value, gradient) in parts {
+    for ValueAndGradient { value, gradient } in parts {
         expected += value / 4.0;
         sum.iter_mut().zip(gradient).for_each(|(sum, part)| *sum += part / 4.0);
     }

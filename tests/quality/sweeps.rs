@@ -62,7 +62,7 @@ fn the_objective_falls() {
     let mut optimizer = Optimizer::new(Config::new(extent([2, 12, 20, 1]), 3)).unwrap();
     let value = |optimizer: &Optimizer| {
         let points: Vec<f64> = optimizer.table().values().iter().map(|&value| value.into()).collect();
-        optimizer.objective().cramer(&points).unwrap().0
+        optimizer.objective().cramer(&points).unwrap().value
     };
     let start = value(&optimizer);
     optimizer.run_observed(Until::Sweeps(2), on).unwrap();

@@ -46,6 +46,15 @@ fn labels_must_fit_the_set() {
     );
 }
 
+/// Refused, not listed: labels of more points than memory holds.
+#[test]
+fn more_points_than_a_table_holds_are_refused() {
+    for counts in [[99_999_999_999, 5], [usize::MAX, 1], [1 << 31, 0]] {
+        let error = refused(Config::classes(&counts, 2, &LabelSubsets::EachAndAll));
+        assert!(matches!(error, ConfigError::Extent(ExtentError::TooLarge { .. })), "{counts:?}: {error}");
+    }
+}
+
 #[test]
 fn ramps_must_have_coordinates() {
     for (coordinates, ramps) in [

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use fsot::config::{BELOW_ONE, Domain, Role};
-use fsot::objective::Slice;
+use fsot::objective::{Slice, ValueAndGradient};
 use fsot::targets::Target;
 use fsot::{Config, Objective, Until, metrics};
 use proptest::prelude::*;
@@ -97,7 +97,8 @@ fn a_single_place_has_its_closed_form() {
         let (objective, slices) = drawn(&config);
         for place in [0.0, 0.3, 1.0 - f64::EPSILON / 2.0] {
             let points = vec![place; 144 * dims];
-            let (value, gradient) = objective.value_and_gradient(&points, &slices).unwrap();
+            let ValueAndGradient { value, gradient } =
+                objective.value_and_gradient(&points, &slices).unwrap();
             let (mut expected, mut sums) = (0.0, vec![0.0; dims]);
             let scale = 1.0 / (144.0 * slices.len() as f64);
             for slice in &slices {
@@ -140,12 +141,14 @@ proptest! {
         config.slicing.batch_slices = Some(128);
         let (objective, mut slices) = drawn(&config);
         let wrap = |value: f64| { let value = value % 1.0; if value < 1.0 { value } else { 0.0 } };
-        let (before, gradient) = objective.value_and_gradient(&points, &slices).unwrap();
+        let ValueAndGradient { value: before, gradient } =
+            objective.value_and_gradient(&points, &slices).unwrap();
         let moved: Vec<f64> = points.iter().enumerate().map(|(i, at)| wrap(at + shift[i % 2])).collect();
         for slice in &mut slices {
             slice.cut.iter_mut().zip(shift).for_each(|(cut, shift)| *cut = wrap(*cut + shift));
         }
-        let (after, moved_gradient) = objective.value_and_gradient(&moved, &slices).unwrap();
+        let ValueAndGradient { value: after, gradient: moved_gradient } =
+            objective.value_and_gradient(&moved, &slices).unwrap();
         // A few roundings of 1e-16 per point. Points do not fall on the f32 cuts, but some come in pairs:
         // exchanging two of equal projection moves their gradients, not the value, nor the sum of gradients.
         prop_assert!((before - after).abs() < 1e-13, "{before} {after}");
@@ -165,7 +168,7 @@ proptest! {
         let mut points = points;
         let mut value_at = |place: f64| {
             points[index] = place;
-            objective.value_and_gradient(&points, &slices).unwrap().0
+            objective.value_and_gradient(&points, &slices).unwrap().value
         };
         let (left, right) = (value_at(1.0 - 1e-12), value_at(0.0));
         // Slope of one coordinate: at most 2 · displacement · theta / N < 2 · √2 / 64.

@@ -25,7 +25,7 @@ fn a_million_samples_in_one_class() {
     let slices = optimizer.objective().draw(99, 0, Role::Descend);
     let value = |optimizer: &Optimizer| {
         let points: Vec<f64> = optimizer.table().values().iter().map(|&value| value.into()).collect();
-        optimizer.objective().value_and_gradient(&points, &slices).unwrap().0
+        optimizer.objective().value_and_gradient(&points, &slices).unwrap().value
     };
     let before = value(&optimizer);
     for step in 0..12 {

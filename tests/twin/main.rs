@@ -322,7 +322,7 @@ fn the_pull_is_the_negative_gradient() {
         let before = optimizer.table();
         let slices = optimizer.objective().draw(config.seed, 0, Role::Descend);
         let points: Vec<f64> = before.values().iter().map(|&value| value.into()).collect();
-        let (_, gradient) = optimizer.objective().value_and_gradient(&points, &slices).unwrap();
+        let gradient = optimizer.objective().value_and_gradient(&points, &slices).unwrap().gradient;
         let pull = textbook::pull(&config, &slices, before.values(), case.tie());
         let rate = 0.5;
         optimizer.step(rate, 0.0);

@@ -146,7 +146,7 @@ pub fn json(
 }
 
 fn marginal(marginal: &Marginal) -> Value {
-    let faces = marginal.faces.map(|FaceDensity { within, density, standard_error }| {
+    let faces = marginal.faces.map(|FaceDensity { within, density, standard_error, .. }| {
         json!({ "within": within, "density": density, "standard_error_of_random": standard_error })
     });
     json!({ "counts": marginal.counts, "faces": faces, "zeros": marginal.zeros })
@@ -157,6 +157,6 @@ fn ratios(ratios: &Ratios) -> Value {
     json!({ "mean": estimate(&ratios.mean), "families": families.collect::<Map<_, _>>() })
 }
 
-fn estimate(Estimate { mean, standard_error }: &Estimate) -> Value {
+fn estimate(Estimate { mean, standard_error, .. }: &Estimate) -> Value {
     json!({ "ratio": mean, "standard_error": standard_error })
 }

@@ -33,7 +33,7 @@ impl ErrorPictures {
     ) -> Result<Self, Failure> {
         let extent = table.extent();
         let Extent { frames, height, width, .. } = extent;
-        let ErrorImage { errors, white_variance } = ErrorImage::measure(table, dims, integrand)?;
+        let ErrorImage { errors, white_variance, .. } = ErrorImage::measure(table, dims, integrand)?;
         let taps = kernel.taps(&extent)?;
         let affordable = ((MOST_WORK / taps.len()) as f64).sqrt().max(1.0) as usize;
         let [rows, columns] = [height, width].map(|side| side.min(LARGEST_SIDE).min(affordable));

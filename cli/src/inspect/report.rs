@@ -45,7 +45,7 @@ pub fn filter(inspection: &Inspection) -> String {
         TemporalKernel::Box { frames } => format!("{space}, box:{frames} in frames"),
         TemporalKernel::Binomial { frames } => format!("{space}, binomial:{frames} in frames"),
         TemporalKernel::Perceptual { fps } => format!("{space}, perceptual:{fps} in frames"),
-        TemporalKernel::Taps(taps) => format!("{space}, {} taps in frames", taps.len()),
+        other => format!("{space}, {} taps in frames", other.taps().map_or(0, |taps| taps.len())),
     }
 }
 

@@ -59,7 +59,7 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
     let Arguments { picture, count, slices, seed, files, shared } = arguments;
     let places = files.check("color_stippling.png", &[picture])?;
     shared.start_threads()?;
-    let inks = Inks::open(picture)?;
+    let inks = Inks::open(picture).map_err(|error| format!("{error} by --picture"))?;
     let config = Config::color_stippling(*count, &inks).with_seed(*seed);
     let sets = config.terms.len();
     let made = make(config, *slices, &Progress::new(shared))?;

@@ -46,7 +46,7 @@ pub fn make(config: Config, slices: u64, progress: &Progress) -> Result<Made, Fa
     let mut optimizer = Optimizer::new(config)?;
     let planning_seconds = begin.elapsed().as_secs_f64();
     let report = run::observed(&mut optimizer, Until::SlicesPerClass(slices), progress)?;
-    let work = Work { planning_seconds, run: run::record(&report) };
+    let work = Work { planning_seconds, run: RunRecord::from(&report) };
     Ok(Made { table: optimizer.into_table(), work })
 }
 

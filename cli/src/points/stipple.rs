@@ -59,7 +59,8 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
     let Arguments { picture, count, bright, slices, seed, files, shared } = arguments;
     let places = files.check("stippling.png", &[picture])?;
     shared.start_threads()?;
-    let density = Density::open(picture, if *bright { Tone::Bright } else { Tone::Dark })?;
+    let density = Density::open(picture, if *bright { Tone::Bright } else { Tone::Dark })
+        .map_err(|error| format!("{error} by --picture"))?;
     let config = Config::stippling(*count, density.clone()).with_seed(*seed);
     let made = make(config, *slices, &Progress::new(shared))?;
     let set = PointSet::new(made.table, vec![0; *count]);

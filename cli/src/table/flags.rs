@@ -65,7 +65,7 @@ pub struct Arguments {
     #[arg(long, conflicts_with = "seconds")]
     slices_per_class: Option<u64>,
     /// Sweeps over all samples, after the slices; not with --domain torus [default: 100 for one sample per
-    /// pixel, 64 for several; 0 with --slices-per-class, --domain torus or --optimizer].
+    /// pixel, 64 for several; 0 with --slices-per-class above 0, --domain torus or --optimizer].
     #[arg(long, conflicts_with = "seconds")]
     sweeps: Option<u64>,
     /// Time for the optimisation alone, instead of an amount of work.

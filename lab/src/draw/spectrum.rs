@@ -49,6 +49,7 @@ fn unwritten(path: &Path, source: io::Error) -> TableError {
 
 #[cfg(test)]
 mod tests {
+    use fsot::metrics::Spectra;
     use ndarray::array;
 
     use super::*;
@@ -69,9 +70,13 @@ mod tests {
     fn radial_averages_are_three_columns() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("radial.csv");
-        write_radial_csv(&path, &[RadialBin { frequency: 0.25, power: 1.5, count: 8 }]).unwrap();
+        // All power of a checkerboard of variance 1/4 and 2 × 2 pixels is at one of three frequencies, of length
+        // 1/2, 1/2 and 1/√2. They are one ring.
+        let checkerboard = array![[[0.5, -0.5], [-0.5, 0.5]]];
+        write_radial_csv(&path, &Spectra::of_image(checkerboard.view(), 0.25).radial()).unwrap();
         let text = std::fs::read_to_string(&path).unwrap();
-        assert_eq!(text, "frequency_cycles_per_px,power,count\n0.250000,1.500000e0,8\n");
+        let lines = ["frequency_cycles_per_px,power,count", "0.569036,1.333333e0,3", ""];
+        assert_eq!(text.split('\n').collect::<Vec<_>>(), lines);
     }
 
     #[test]

@@ -52,7 +52,18 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { filter, out, machine, quick } = arguments;
     let (cases, plain_case) = if *quick { case::tiny() } else { case::full() };
     let wanted = |title: &str| filter.as_ref().is_none_or(|filter| title.contains(filter.as_str()));
+    let mut titles: Vec<&str> = factors::all().iter().map(|factor| factor.title).collect();
+    titles.push(plain::TITLE);
+    if !titles.iter().any(|title| wanted(title)) {
+        let named = filter.as_deref().unwrap_or_default();
+        return Err(format!("no factor's title contains '{named}': name one of {}", titles.join(", ")).into());
+    }
     if let Some(out) = out {
+        if filter.is_some() {
+            return Err(
+                "a part of the factors would replace the whole page: leave out --out, or the filter".into()
+            );
+        }
         program::make_folder(out)?;
     }
 
