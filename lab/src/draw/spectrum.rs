@@ -70,8 +70,8 @@ mod tests {
     fn radial_averages_are_three_columns() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("radial.csv");
-        // All power of a checkerboard of variance 1/4 is at one of its three frequencies. Of length 1/2, 1/2 and
-        // 1/√2, they are one ring.
+        // All power of a checkerboard of variance 1/4 is at one of its three frequencies. Of length 1/2, 1/2
+        // and 1/√2, they are one ring.
         let checkerboard = array![[[0.5, -0.5], [-0.5, 0.5]]];
         write_radial_csv(&path, &Spectra::of_image(checkerboard.view(), 0.25).radial()).unwrap();
         let text = std::fs::read_to_string(&path).unwrap();
