@@ -38,7 +38,7 @@ Exit codes: 0 done, 1 refused or failed, 2 bad command line.";
 
 /// Measures a sample table against white noise of the same shape, and draws a page of it.
 #[derive(Args, Debug)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, allow_negative_numbers = true)]
 pub struct Arguments {
     /// The table: a .npy file with axes [frame, y, x, sample, dim].
     path: PathBuf,

@@ -31,7 +31,7 @@ Exit codes: 0 done, 1 refused or failed, 2 bad command line, 3 ended early by a 
 
 /// Makes points in cyan, magenta, yellow and black that resemble a picture, and draws them.
 #[derive(Args, Debug)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, allow_negative_numbers = true)]
 pub struct Arguments {
     /// PNG or EXR file; the default is a garden that comes with the source code.
     #[arg(long, default_value = "data/garden.png")]

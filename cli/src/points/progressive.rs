@@ -30,7 +30,7 @@ Exit codes: 0 done, 1 refused or failed, 2 bad command line, 3 ended early by a 
 
 /// Makes progressive sequences, compares their prefixes with Owen-scrambled Sobol' points, and draws some.
 #[derive(Args, Debug)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, allow_negative_numbers = true)]
 pub struct Arguments {
     /// Points of the sequence.
     #[arg(long, default_value_t = 4096)]

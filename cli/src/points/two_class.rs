@@ -34,7 +34,7 @@ Exit codes: 0 done, 1 refused or failed, 2 bad command line, 3 ended early by a 
 
 /// Makes a point set of several classes, measures it, and draws each class beside the union.
 #[derive(Args, Debug)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, allow_negative_numbers = true)]
 pub struct Arguments {
     /// Points of each class, one number per class.
     #[arg(long, value_delimiter = ',', default_value = "512,512")]

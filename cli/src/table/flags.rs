@@ -26,7 +26,7 @@ Exit codes: 0 done, 1 refused or failed, 2 bad command line, 3 ended early by a 
 
 /// Optimises a table of random numbers so that a renderer's error is blue noise in space and time.
 #[derive(Args, Debug)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, allow_negative_numbers = true)]
 pub struct Arguments {
     /// Columns of a frame, in pixels.
     #[arg(long, default_value_t = 64)]

@@ -34,12 +34,13 @@ fn flags() {
     all_refused(&[
         ("--wrong", "unexpected argument '--wrong'"),
         ("--width many", "invalid value 'many' for '--width <WIDTH>'"),
-        ("--width -4", "unexpected argument '-4'"),
+        ("--width -4", "invalid value '-4' for '--width <WIDTH>'"),
         ("--width 1.5", "invalid value '1.5'"),
         ("--optimizer newton", "invalid value 'newton'"),
         ("--domain sphere", "invalid value 'sphere'"),
-        ("--seed -1", "unexpected argument '-1'"),
+        ("--seed -1", "invalid value '-1' for '--seed <SEED>'"),
         ("--seconds 1 --slices-per-class 5", "cannot be used with"),
+        ("--sigma -1", "sigma_px is -1: give a value above 0"),
         ("stray", "unexpected argument 'stray'"),
     ]);
 }
