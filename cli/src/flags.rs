@@ -1,6 +1,7 @@
 //! Flags that every verb has.
 
 use clap::Args;
+use clap::builder::RangedU64ValueParser;
 
 use crate::Failure;
 
@@ -41,4 +42,9 @@ impl Shared {
             }
         }
     }
+}
+
+/// How many points: at least one.
+pub(crate) fn count() -> RangedU64ValueParser<usize> {
+    RangedU64ValueParser::new().range(1..1 << 31)
 }

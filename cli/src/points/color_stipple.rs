@@ -37,7 +37,7 @@ pub struct Arguments {
     #[arg(long, default_value = "data/garden.png")]
     picture: PathBuf,
     /// Points in all.
-    #[arg(long, default_value_t = 24576)]
+    #[arg(long, default_value_t = 24576, value_parser = crate::flags::count())]
     count: usize,
     /// Slices per set of inks.
     #[arg(long, default_value_t = 1000)]

@@ -33,7 +33,7 @@ Exit codes: 0 done, 1 refused or failed, 2 bad command line, 3 ended early by a 
 #[command(after_help = EXAMPLES, allow_negative_numbers = true)]
 pub struct Arguments {
     /// Points of the sequence.
-    #[arg(long, default_value_t = 4096)]
+    #[arg(long, default_value_t = 4096, value_parser = crate::flags::count())]
     count: usize,
     /// Which prefixes are classes.
     #[arg(long, value_enum, default_value_t = Prefixes::Powers)]

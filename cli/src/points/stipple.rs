@@ -37,7 +37,7 @@ pub struct Arguments {
     #[arg(long, default_value = "data/lantern.png")]
     picture: PathBuf,
     /// Points.
-    #[arg(long, default_value_t = 8192)]
+    #[arg(long, default_value_t = 8192, value_parser = crate::flags::count())]
     count: usize,
     /// Bright instead of dark.
     #[arg(long)]

@@ -75,6 +75,9 @@ const POOR: f64 = 2.0;
 pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
     let Arguments { counts, every, slices, seed, no_comparison, files, shared } = arguments;
     let places = files.check("two_class.png", &[])?;
+    if counts.iter().all(|&count| count == 0) {
+        return Err("there are no points: give --counts of which one is above 0".into());
+    }
     shared.start_threads()?;
     let subsets = if *every { LabelSubsets::Every } else { LabelSubsets::EachAndAll };
     let config = Config::classes(counts, 2, &subsets).with_seed(*seed);

@@ -10,7 +10,7 @@ use ndarray_npy::ReadNpyExt;
 use serde_json::Value;
 use tempfile::tempdir;
 
-use crate::{names, run};
+use crate::{command, names, run, texts};
 
 /// Rows of x, y and label.
 fn npy(path: &Path) -> Vec<[f32; 3]> {
@@ -125,4 +125,17 @@ fn the_seed_and_not_the_threads_decide() {
     let alone = points("--threads 1");
     assert_eq!(points("--threads 3"), alone);
     assert_ne!(points("--seed 1"), alone);
+}
+
+#[test]
+fn no_points_are_refused_by_the_name_of_the_flag() {
+    let home = tempdir().unwrap();
+    let all =
+        ["stipple --count", "color-stipple --count", "progressive --count", "two-class --counts 0 --counts"];
+    for arguments in all {
+        let output = command(home.path(), &format!("points {arguments} 0")).output().unwrap();
+        let (_, err) = texts(&output);
+        assert!(!output.status.success() && err.contains("--count"), "{arguments}: {err}");
+    }
+    assert_eq!(names(home.path()), [""; 0]);
 }

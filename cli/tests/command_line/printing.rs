@@ -172,19 +172,20 @@ fn nobody_has_to_listen() {
     assert_eq!(shell("fsot table --width 8 --height 8 --sweeps 1 >&- 2>&-"), Some(0));
 }
 
+const VERBS: [&str; 7] = [
+    "table",
+    "inspect",
+    "points",
+    "points two-class",
+    "points progressive",
+    "points stipple",
+    "points color-stipple",
+];
+
 #[test]
 fn help_has_examples_and_exit_codes_everywhere() {
     let home = tempdir().unwrap();
-    let verbs = [
-        "table",
-        "inspect",
-        "points",
-        "points two-class",
-        "points progressive",
-        "points stipple",
-        "points color-stipple",
-    ];
-    for verb in verbs {
+    for verb in VERBS {
         let (out, _) = run(home.path(), &format!("{verb} --help"));
         let (_, examples) = out.split_once("Examples:\n").expect(verb);
         let lines = examples.lines().filter(|line| line.starts_with(&format!("  fsot {verb}"))).count();
@@ -202,16 +203,7 @@ fn help_has_examples_and_exit_codes_everywhere() {
 #[test]
 fn examples_are_understood() {
     let home = tempdir().unwrap();
-    for verb in [
-        "",
-        "table",
-        "inspect",
-        "points",
-        "points two-class",
-        "points progressive",
-        "points stipple",
-        "points color-stipple",
-    ] {
+    for verb in [""].into_iter().chain(VERBS) {
         let (out, _) = run(home.path(), &format!("{verb} --help"));
         let examples = out.lines().filter_map(|line| line.strip_prefix("  fsot ")).collect::<Vec<_>>();
         assert!(!examples.is_empty(), "{verb}");
