@@ -17,6 +17,7 @@ use crate::kernel::Tap;
 use crate::table::SampleTable;
 use crate::table::domain::Domain;
 use crate::table::extent::Extent;
+use crate::targets::Target;
 
 /// An objective planned for one extent.
 ///
@@ -148,6 +149,14 @@ impl Objective {
     pub(crate) fn balances_are_nested(&self) -> bool {
         let balances = || self.terms.iter().filter(|term| term.spec.role == Role::Balance);
         balances().any(|term| term.family.visits() > 1) && balances().any(|term| term.family.visits() == 1)
+    }
+
+    /// Whether sweeps balance a term by themselves, without slices.
+    pub(crate) fn is_balanced_in_sweeps(&self, term: &PlannedTerm) -> bool {
+        term.spec.role == Role::Balance
+            && matches!(term.spec.classes, Classes::WholeTable | Classes::PerFrame)
+            && term.spec.target == Target::UniformCube
+            && term.spec.dims.iter().all(|&dim| self.domains[dim] == Domain::Interval)
     }
 
     /// Slices of lattice terms that a step draws per visited pixel and frame, in the mean; per class where

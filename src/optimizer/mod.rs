@@ -165,6 +165,9 @@ impl Optimizer {
     /// Moves the samples by the picked slices of a step.
     fn advance(&mut self, number: u64, picks: &[Picked], rate: f64, share: f64) -> (f64, u64) {
         let step = Step { seed: self.config.seed, number, picks, rate, share };
+        if let Some(sweeper) = &mut self.sweeper {
+            sweeper.outdate();
+        }
         self.slices.step(&self.objective, &mut self.points, &step)
     }
 
@@ -186,6 +189,7 @@ impl Optimizer {
         for step in 0..sweeps::STEPS {
             pulls += self.sweep_step(step, rate, balance)?;
         }
+        self.fetch();
         Ok(pulls.root())
     }
 
@@ -202,17 +206,26 @@ impl Optimizer {
             // Also one that is broken off is not repeated.
             *swept += 1;
         }
-        if step.is_multiple_of(sweeps::STEPS / BALANCES) {
-            // What has moved the table since: a balance, slices, a caller.
-            sweeper.load(points);
-        }
+        sweeper.load(points);
         let pulls = sweeper.step(step, rate, domains);
-        if (step + 1).is_multiple_of(sweeps::STEPS / BALANCES) {
-            sweeper.store(points);
-            let turn = *swept * BALANCES as u64 + (step / (sweeps::STEPS / BALANCES)) as u64;
-            self.balance(turn, balance);
+        if (step + 1).is_multiple_of(sweeps::STEPS / balances()) {
+            let turn = *swept * balances() as u64 + (step / (sweeps::STEPS / balances())) as u64;
+            sweeper.balance(turn, balance);
+            let slices = objective.terms.iter().any(|term| term.spec.role == Role::Balance && !objective.is_balanced_in_sweeps(term));
+            if slices {
+                sweeper.store(points);
+                let turn = *swept * balances() as u64 + (step / (sweeps::STEPS / balances())) as u64;
+                self.balance(turn, balance);
+            }
         }
         Ok(pulls)
+    }
+
+    /// Brings the samples from the sweeps' copy.
+    fn fetch(&mut self) {
+        if let Some(sweeper) = &mut self.sweeper {
+            sweeper.store(&mut self.points);
+        }
     }
 
     /// Moves the samples `share` of the way along one slice of every class in the role of [`Role::Balance`].
@@ -223,13 +236,11 @@ impl Optimizer {
     /// Brings the balances within each other, of frames and of the whole table, to an agreement after the
     /// last sweep.
     fn settle(&mut self, sweeps: u64, share: f64) {
-        if self.objective.balances_are_nested() {
-            for turn in 0..SETTLING_TURNS.min(sweeps.saturating_mul(BALANCES as u64)) {
-                self.balance((self.swept + 1) * BALANCES as u64 + turn, share);
-            }
-        }
+        let n = std::env::var("SETTLE").map_or(0, |v| v.parse().unwrap());
+        for _ in 0..n { self.sweeper.as_mut().unwrap().balance(0, share); }
     }
 }
+fn balances() -> usize { std::env::var("BAL").map_or(2, |v| v.parse().unwrap()) }
 
 /// Turns of the balance per sweep: with one alone, the bias is three times as large.
 const BALANCES: usize = 2;

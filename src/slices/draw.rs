@@ -70,7 +70,8 @@ impl Objective {
         orders.resize_with(self.terms.len(), VisitOrder::default);
         draws.clear();
         for (index, (term, order)) in self.terms.iter().zip(orders).enumerate() {
-            if term.spec.role != pick.role() {
+            let is_swept = matches!(pick, Picked::Each(_)) && self.is_balanced_in_sweeps(term);
+            if term.spec.role != pick.role() || is_swept {
                 continue;
             }
             let members = term.family.visits() as u64;

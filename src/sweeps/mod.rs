@@ -15,18 +15,23 @@
 //! every sample once and moves it along its exact gradient; that costs one pass over the pairs that some
 //! filter holds together, in long runs of neighbouring pixels and without any search.
 
+mod axis;
+mod balance;
+mod cut;
 mod exact;
+mod lines;
+mod modes;
 mod field;
 mod pairs;
-mod planes;
 mod sweeper;
+mod tiles;
 
 pub(crate) use sweeper::{MeanSquare, STEPS, Sweeper};
 
 use crate::config::Role;
 use crate::error::ConfigError;
 use crate::objective::Objective;
-use crate::table::domain::Domain;
+use crate::table::domain::{BELOW_ONE, Domain};
 use crate::targets::Target;
 
 /// Refuses an objective with a descended term for which the closed form does not hold.
@@ -46,6 +51,15 @@ pub(crate) fn check(objective: &Objective) -> Result<(), ConfigError> {
         return Err(ConfigError::NotInClosedForm { term: index, why });
     }
     Ok(())
+}
+
+/// Brings a coordinate that has left `[0, 1)` back by the way it went, as a mirror would.
+#[inline(always)]
+fn reflect(coordinate: f32) -> f32 {
+    let above = coordinate.abs();
+    let inside = 1.0 - (1.0 - above).abs();
+    // Farther than a mirror reaches, or 1 itself.
+    inside.max(0.0).min(BELOW_ONE)
 }
 
 /// Mean length of the projection of a unit vector in `dims` dimensions on a random direction:

@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 use std::ops::Range;
 
 use super::field::FieldTable;
-use super::planes::{Planes, Run};
-use crate::kernel::autocorrelation;
+use super::tiles::{Cell, Run, Tiles};
+use crate::kernel::{Tap, autocorrelation};
 use crate::objective::plan::PlannedTerm;
 use crate::simd::{LANES, Row};
 use crate::table::extent::{Extent, MOST_DIMS};
@@ -14,11 +14,10 @@ use crate::table::extent::{Extent, MOST_DIMS};
 #[derive(Clone, Debug)]
 pub(super) struct Pairs {
     pub dims: Vec<usize>,
-    extent: Extent,
-    spans: Vec<Span>,
-    taps: Vec<RowTap>,
-    /// Reach in x.
-    reach: usize,
+    spp: usize,
+    taps: Vec<Tap>,
+    /// Taps of one row of neighbours each.
+    spans: Vec<Range<usize>>,
     /// `Σ_j F_ij`, the same for every sample of a table that is demanded whole.
     total: f32,
     /// `Σ_j F_ij / F_ii`: the number of neighbours, each as much as it is held together.
@@ -26,50 +25,28 @@ pub(super) struct Pairs {
     field: FieldTable,
 }
 
-/// The taps of one row of neighbours.
-#[derive(Clone, Debug)]
-struct Span {
-    /// Forward, wrapped.
-    dt: usize,
-    dy: usize,
-    taps: Range<usize>,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct RowTap {
-    /// Offset in x plus `reach`.
-    dx: u32,
-    weight: f32,
-}
-
 impl Pairs {
     /// Plans the closed form of a lattice term, without pairs below `truncation` of the strongest.
     pub(super) fn new(term: &PlannedTerm, extent: Extent, truncation: f64) -> Self {
         let taps = autocorrelation(term.family.taps().unwrap_or_default(), &extent, truncation);
-        let reach = taps.iter().map(|tap| tap.dx.unsigned_abs() as usize).max().unwrap_or(0);
-        let mut spans: Vec<Span> = Vec::new();
-        let forward = |by: i32, len: usize| by.rem_euclid(len as i32) as usize;
+        let mut spans: Vec<Range<usize>> = Vec::new();
         for (index, tap) in taps.iter().enumerate() {
-            let (dt, dy) = (forward(tap.dt, extent.frames), forward(tap.dy, extent.height));
             match spans.last_mut() {
-                Some(span) if (span.dt, span.dy) == (dt, dy) => span.taps.end = index + 1,
-                _ => spans.push(Span { dt, dy, taps: index..index + 1 }),
+                Some(span) if (taps[span.start].dt, taps[span.start].dy) == (tap.dt, tap.dy) => {
+                    span.end = index + 1;
+                }
+                _ => spans.push(index..index + 1),
             }
         }
         let total: f64 = taps.iter().map(|tap| tap.weight).sum();
-        let row_tap = |tap: &crate::kernel::Tap| RowTap {
-            dx: (tap.dx + reach as i32) as u32,
-            weight: tap.weight as f32,
-        };
         Self {
             dims: term.spec.dims.clone(),
-            extent,
-            spans,
-            taps: taps.iter().map(row_tap).collect(),
-            reach,
+            spp: extent.spp,
             total: (total * extent.spp as f64) as f32,
             crowd: total * extent.spp as f64 / taps.iter().map(|tap| tap.weight).fold(0.0, f64::max),
             field: FieldTable::new(term.spec.dims.len()),
+            spans,
+            taps,
         }
     }
 
@@ -80,28 +57,22 @@ impl Pairs {
         self.crowd * (ball * self.crowd).powf(-1.0 / dims)
     }
 
-    pub(super) fn reach(&self) -> usize {
-        self.reach
+    /// Offsets of the neighbours, and how strongly some filter holds each.
+    pub(super) fn taps(&self) -> &[Tap] {
+        &self.taps
     }
 
     /// Adds `factor` times the pull on the samples of a run, one row of lanes per dimension of the table: the
     /// mean unit vector away from their neighbours, less that away from a uniform point.
     #[inline(always)]
-    pub(super) fn add_pull(
-        &self,
-        planes: &Planes,
-        margin: usize,
-        run: Run,
-        factors: &[f32],
-        pulls: &mut [Row],
-    ) {
+    pub(super) fn add_pull(&self, tiles: &Tiles, run: Run, factors: &[f32], pulls: &mut [Row]) {
         match self.dims.len() {
-            1 => self.add::<1>(1, planes, margin, run, factors, pulls),
-            2 => self.add::<2>(2, planes, margin, run, factors, pulls),
-            3 => self.add::<3>(3, planes, margin, run, factors, pulls),
-            4 => self.add::<4>(4, planes, margin, run, factors, pulls),
-            dims @ 5..=8 => self.add::<8>(dims, planes, margin, run, factors, pulls),
-            dims => self.add::<MOST_DIMS>(dims, planes, margin, run, factors, pulls),
+            1 => self.add::<1>(1, tiles, run, factors, pulls),
+            2 => self.add::<2>(2, tiles, run, factors, pulls),
+            3 => self.add::<3>(3, tiles, run, factors, pulls),
+            4 => self.add::<4>(4, tiles, run, factors, pulls),
+            dims @ 5..=8 => self.add::<8>(dims, tiles, run, factors, pulls),
+            dims => self.add::<MOST_DIMS>(dims, tiles, run, factors, pulls),
         }
     }
 
@@ -111,34 +82,29 @@ impl Pairs {
     fn add<const MOST: usize>(
         &self,
         dims: usize,
-        planes: &Planes,
-        margin: usize,
+        tiles: &Tiles,
         run: Run,
         factors: &[f32],
         pulls: &mut [Row],
     ) {
         let mut own = [[0.0; LANES]; MOST];
         let mut sums = [[0.0; LANES]; MOST];
-        let mut total = [if planes.is_partial() { 0.0 } else { self.total }; LANES];
-        for (own, &dim) in own.iter_mut().zip(&self.dims) {
-            *own = lanes(planes.row(dim, run.sample, run.frame, run.y), margin + run.x);
+        let mut total = [if tiles.is_partial() { 0.0 } else { self.total }; LANES];
+        let mut places = [0; MOST];
+        places[..dims].copy_from_slice(&self.dims);
+        for k in 0..dims {
+            own[k] = tiles.row(run.sample, run, [0; 2])[tiles.column(run, 0) + places[k]].0;
         }
         for span in &self.spans {
-            let wrap = |at: usize, len: usize| if at >= len { at - len } else { at };
-            let frame = wrap(run.frame + span.dt, self.extent.frames);
-            let y = wrap(run.y + span.dy, self.extent.height);
-            for sample in 0..self.extent.spp {
-                let first = margin + run.x - self.reach;
-                let mut others: [&[f32]; MOST] = [&[]; MOST];
-                for (others, &dim) in others.iter_mut().zip(&self.dims) {
-                    *others = &planes.row(dim, sample, frame, y)[first..];
-                }
-                let demanded = planes.demanded(sample, frame, y).map(|row| &row[first..]);
-                for tap in &self.taps[span.taps.clone()] {
-                    let at = tap.dx as usize;
+            let taps = &self.taps[span.clone()];
+            for sample in 0..self.spp {
+                let row = tiles.row(sample, run, [taps[0].dt, taps[0].dy]);
+                for tap in taps {
+                    let weight = tap.weight as f32;
+                    let others = &row[tiles.column(run, tap.dx)..][..tiles.planes()];
                     let mut squares = [NEAREST; LANES];
                     for k in 0..dims {
-                        let other = lanes(others[k], at);
+                        let Cell(other) = others[places[k]];
                         for lane in 0..LANES {
                             let away = own[k][lane] - other[lane];
                             squares[lane] += away * away;
@@ -146,17 +112,17 @@ impl Pairs {
                     }
                     let mut strengths = [0.0; LANES];
                     for lane in 0..LANES {
-                        strengths[lane] = tap.weight * inverse_root(squares[lane]);
+                        strengths[lane] = weight * inverse_root(squares[lane]);
                     }
-                    if let Some(demanded) = demanded {
-                        let demanded = lanes(demanded, at);
+                    if tiles.is_partial() {
+                        let Cell(demanded) = others[tiles.planes() - 1];
                         for lane in 0..LANES {
                             strengths[lane] *= demanded[lane];
-                            total[lane] += tap.weight * demanded[lane];
+                            total[lane] += weight * demanded[lane];
                         }
                     }
                     for k in 0..dims {
-                        let other = lanes(others[k], at);
+                        let Cell(other) = others[places[k]];
                         for lane in 0..LANES {
                             sums[k][lane] += strengths[lane] * (own[k][lane] - other[lane]);
                         }
@@ -178,13 +144,6 @@ impl Pairs {
 /// Squared distance that is added to every other, so that a sample is not divided by its distance from
 /// itself.
 const NEAREST: f32 = 1e-14;
-
-#[inline(always)]
-fn lanes(row: &[f32], at: usize) -> Row {
-    let mut lanes = [0.0; LANES];
-    lanes.copy_from_slice(&row[at..at + LANES]);
-    lanes
-}
 
 /// `1 / √x` to 5e-6, by a shift of the exponent and two Newton steps (Lomont 2003, "Fast inverse square
 /// root"): the same bits on every processor, unlike instructions that estimate it, and vectorised, unlike

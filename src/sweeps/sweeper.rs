@@ -6,10 +6,12 @@ use pulp::{Arch, NullaryFnOnce};
 use rand::seq::SliceRandom;
 use rayon::prelude::*;
 
+use super::balance::Balance;
 use super::pairs::Pairs;
-use super::planes::{Planes, Run};
+use super::tiles::{Run, Tiles};
 use crate::config::{Role, Sweeps};
 use crate::error::ConfigError;
+use crate::kernel::Tap;
 use crate::objective::Objective;
 use crate::random::{self, Purpose};
 use crate::simd::{self, LANES, Row};
@@ -21,24 +23,26 @@ pub(crate) const STEPS: usize = 16;
 
 /// A table on its way through sweeps.
 ///
-/// A *run* of [`LANES`] consecutive pixels is the unit of work. Each step of a sweep moves a random sixteenth
-/// of the runs; their pulls are computed in parallel from the same table, then applied, so that nothing
-/// depends on threads.
+/// A *run* of [`LANES`] samples that lie far from each other, the same cell of as many tiles, is the unit of
+/// work. Each step of a sweep moves a random part of the runs; their pulls are computed in parallel from the
+/// same table, then applied, so that nothing depends on threads.
 pub(crate) struct Sweeper {
     arch: Arch,
     terms: Vec<Pairs>,
     /// What a term's pull counts on each of its coordinates.
     factors: Vec<Vec<f32>>,
-    margin: usize,
-    planes: Planes,
+    tiles: Tiles,
+    balance: Balance,
     dims: usize,
     /// Runs that hold a demanded sample, in the order of this sweep.
     order: Vec<u32>,
     pulls: Vec<Row>,
     /// Largest rate that settles.
     most: f64,
-    /// Whether samples have moved since the table was read or written.
+    /// Whether samples have moved here since the table was read or written.
     ahead: bool,
+    /// Whether they have moved there.
+    behind: bool,
 }
 
 impl Sweeper {
@@ -62,31 +66,36 @@ impl Sweeper {
         });
         let factors = factors.collect();
         let most = COLLECTIVE * STEPS as f64 / terms.iter().map(Pairs::natural_step).fold(1.0, f64::max);
-        let margin = terms.iter().map(Pairs::reach).max().unwrap_or(0);
-        let planes = Planes::new(extent, dims, margin, &objective.wanted);
-        let wanted = |&index: &u32| {
-            let run = planes.run(index as usize);
-            (0..planes.len(run)).any(|lane| planes.wants(run, lane))
-        };
-        let order = (0..planes.runs() as u32).filter(wanted).collect();
+        let taps: Vec<Tap> = terms.iter().flat_map(Pairs::taps).copied().collect();
+        let tiles = Tiles::new(extent, dims, &taps, &objective.wanted);
+        let is_wanted = |&index: &u32| tiles.run(index as usize).lanes().next().is_some();
+        let order = (0..tiles.runs() as u32).filter(is_wanted).collect();
         Ok(Self {
             arch: Arch::new(),
             terms,
             factors,
-            margin,
-            planes,
+            tiles,
+            balance: Balance::new(objective),
             dims,
             order,
             pulls: Vec::new(),
             most,
             ahead: false,
+            behind: true,
         })
     }
 
-    /// Reads the table anew.
+    /// Reads the table, if others have moved samples.
     pub(crate) fn load(&mut self, points: &[f32]) {
-        self.planes.load(points);
-        self.ahead = false;
+        if self.behind {
+            self.tiles.load(points);
+            (self.ahead, self.behind) = (false, false);
+        }
+    }
+
+    /// Says that others have moved samples.
+    pub(crate) fn outdate(&mut self) {
+        self.behind = true;
     }
 
     /// Writes the table back, if samples have moved.
@@ -98,7 +107,7 @@ impl Sweeper {
     /// Writes the table as it is now, where samples have moved since it was stored.
     pub(crate) fn write_to(&self, points: &mut [f32]) {
         if self.ahead {
-            self.planes.store(points);
+            self.tiles.store(points);
         }
     }
 
@@ -117,25 +126,31 @@ impl Sweeper {
     /// What moves is the copy, until it is stored.
     pub(crate) fn step(&mut self, step: usize, rate: f64, domains: &[Domain]) -> MeanSquare {
         let rate = rate.min(self.most);
-        let Self { arch, terms, factors, margin, planes, dims, order, pulls, ahead, .. } = self;
-        let (dims, margin) = (*dims, *margin);
+        let Self { arch, terms, factors, tiles, dims, order, pulls, ahead, .. } = self;
+        let dims = *dims;
         let runs = &order[part(order.len(), step)];
         pulls.resize(runs.len() * dims, [0.0; LANES]);
         let tasks = pulls.par_chunks_exact_mut(dims).zip(runs);
         tasks.with_min_len(RUNS_PER_TASK).for_each(|(pulls, &run)| {
-            let run = planes.run(run as usize);
-            arch.dispatch(PullOfRun { terms, factors, planes, margin, run, pulls });
+            let run = tiles.run(run as usize);
+            arch.dispatch(PullOfRun { terms, factors, tiles, run, pulls });
         });
         let mut all = MeanSquare::default();
         for (pulls, &run) in pulls.chunks_exact(dims).zip(runs) {
-            let run = planes.run(run as usize);
+            let run = tiles.run(run as usize);
             for (dim, (pull, &domain)) in pulls.iter().zip(domains).enumerate() {
-                all.add(pull, |lane| lane < planes.len(run) && planes.wants(run, lane));
-                planes.shift(dim, run, &pull.map(|pull| rate as f32 * pull), domain);
+                all.add(pull, run);
+                tiles.shift(run, dim, &pull.map(|pull| rate as f32 * pull), domain);
             }
         }
         *ahead = true;
         all
+    }
+
+    /// Brings the whole table and its frames `share` of the way to where they are uniform.
+    pub(crate) fn balance(&mut self, turn: u64, share: f64) {
+        self.balance.advance(self.arch, &mut self.tiles, turn, share);
+        self.ahead = true;
     }
 
     /// The pulls of a step that was just taken, by coordinate.
@@ -143,9 +158,9 @@ impl Sweeper {
     pub(super) fn each_pull(&self, step: usize, mut visit: impl FnMut(usize, f32)) {
         let runs = &self.order[part(self.order.len(), step)];
         for (pulls, &run) in self.pulls.chunks_exact(self.dims).zip(runs) {
-            let run = self.planes.run(run as usize);
-            for lane in (0..self.planes.len(run)).filter(|&lane| self.planes.wants(run, lane)) {
-                let first = self.planes.first(run, lane);
+            let run = self.tiles.run(run as usize);
+            for lane in run.lanes() {
+                let first = self.tiles.sample(run, lane) * self.dims;
                 pulls.iter().enumerate().for_each(|(dim, pull)| visit(first + dim, pull[lane]));
             }
         }
@@ -153,8 +168,8 @@ impl Sweeper {
 
     #[cfg(test)]
     pub(super) fn pull_of_run<'a>(&'a self, run: usize, pulls: &'a mut [Row]) -> PullOfRun<'a> {
-        let Self { terms, factors, planes, margin, .. } = self;
-        PullOfRun { terms, factors, planes, margin: *margin, run: planes.run(run), pulls }
+        let Self { terms, factors, tiles, .. } = self;
+        PullOfRun { terms, factors, tiles, run: tiles.run(run), pulls }
     }
 }
 
@@ -179,9 +194,9 @@ impl AddAssign for MeanSquare {
 
 impl MeanSquare {
     #[inline(always)]
-    fn add(&mut self, pulls: &Row, is_one: impl Fn(usize) -> bool) {
+    fn add(&mut self, pulls: &Row, run: Run) {
         let mut squares = [0.0; LANES];
-        for lane in (0..LANES).filter(|&lane| is_one(lane)) {
+        for lane in run.lanes() {
             squares[lane] = pulls[lane] * pulls[lane];
             self.count += 1;
         }
@@ -204,8 +219,7 @@ const RUNS_PER_TASK: usize = 2;
 pub(super) struct PullOfRun<'a> {
     terms: &'a [Pairs],
     factors: &'a [Vec<f32>],
-    planes: &'a Planes,
-    margin: usize,
+    tiles: &'a Tiles,
     run: Run,
     pulls: &'a mut [Row],
 }
@@ -215,10 +229,10 @@ impl NullaryFnOnce for PullOfRun<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { terms, factors, planes, margin, run, pulls } = self;
+        let Self { terms, factors, tiles, run, pulls } = self;
         pulls.fill([0.0; LANES]);
         for (pairs, factors) in terms.iter().zip(factors) {
-            pairs.add_pull(planes, margin, run, factors, pulls);
+            pairs.add_pull(tiles, run, factors, pulls);
         }
     }
 }

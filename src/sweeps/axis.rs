@@ -1,0 +1,108 @@
+//! One axis of the lattice, cut into tiles: where a site is stored, and where its copies are.
+
+use std::ops::Range;
+
+use crate::simd::LANES;
+
+/// An axis of the lattice, cut into tiles of nearly equal length, one per lane along it.
+///
+/// A tile is stored as its *cells* and as many sites to either side of them as neighbours reach, so that a
+/// neighbour in one tile is the same number of cells away as in all others. An axis of one tile may wrap
+/// onto itself instead, and stores no site twice.
+#[derive(Clone, Debug)]
+pub(super) struct Axis {
+    len: usize,
+    /// Sites that are stored to either side of the cells; 0 if the axis wraps onto itself.
+    margin: usize,
+    /// First site of each tile; tiles follow each other, and may be shorter than `cells`.
+    starts: Vec<usize>,
+    /// Sites of the part that is cut.
+    window: Range<usize>,
+    /// Cells of the longest tile.
+    cells: usize,
+}
+
+/// Where the tiles store what they own at some cell.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Copies {
+    pub place: usize,
+    /// For each lane the part along this axis of the lane that it has a copy of, or [`NO_LANE`].
+    pub of: [u8; LANES],
+}
+
+/// Added to others it remains more than any lane.
+pub(super) const NO_LANE: u8 = 64;
+
+impl Axis {
+    /// Cuts the sites of `window` (which may run over the end of the axis) into `tiles`, with a margin for
+    /// neighbours. Without one the axis wraps, and there may be one tile alone, of the whole axis.
+    pub(super) fn new(len: usize, window: Range<usize>, tiles: usize, margin: usize) -> Self {
+        let start = |tile: usize| window.start + window.len() * tile / tiles;
+        let starts: Vec<usize> = (0..tiles).map(start).collect();
+        let cells = (0..tiles).map(|tile| start(tile + 1) - start(tile)).max().unwrap_or(1).max(1);
+        Self { len, margin, starts, window, cells }
+    }
+
+    pub(super) fn tiles(&self) -> usize {
+        self.starts.len()
+    }
+
+    pub(super) fn cells(&self) -> usize {
+        self.cells
+    }
+
+    /// Places of a tile.
+    pub(super) fn stored(&self) -> usize {
+        self.cells + 2 * self.margin
+    }
+
+    /// Place of what is `offset` sites after a cell.
+    #[inline(always)]
+    pub(super) fn place(&self, cell: usize, offset: i32) -> usize {
+        if self.margin == 0 {
+            (cell as i64 + i64::from(offset)).rem_euclid(self.len as i64) as usize
+        } else {
+            (cell + self.margin).wrapping_add_signed(offset as isize)
+        }
+    }
+
+    /// The site that a tile stores at a place.
+    pub(super) fn site(&self, tile: usize, place: usize) -> usize {
+        let before = self.margin.next_multiple_of(self.len) - self.margin;
+        (self.starts[tile] + before + place) % self.len
+    }
+
+    /// Whether a cell belongs to the tile, and not to the next one.
+    pub(super) fn owns(&self, tile: usize, cell: usize) -> bool {
+        let next = self.starts.get(tile + 1).copied().unwrap_or(self.window.end);
+        self.starts[tile] + cell < next
+    }
+
+    /// The tile that owns a site, and its cell there; `None` outside the window.
+    pub(super) fn owner(&self, site: usize) -> Option<[usize; 2]> {
+        let at = if site < self.window.start { site + self.len } else { site };
+        let tile = self.starts.partition_point(|&start| start <= at).checked_sub(1)?;
+        let cell = at - self.starts[tile];
+        self.owns(tile, cell).then_some([tile, cell])
+    }
+
+    /// The copies of every cell, its own place first. `tile` tells that of a lane, and the next lane along
+    /// the axis is `stride` lanes away.
+    pub(super) fn copies(&self, tile: impl Fn(usize) -> usize, stride: usize) -> Vec<Vec<Copies>> {
+        let mut copies = vec![Vec::new(); self.cells];
+        for place in (self.margin..self.stored()).chain(0..self.margin) {
+            let owners: Vec<_> = (0..LANES).map(|lane| self.owner(self.site(tile(lane), place))).collect();
+            for (cell, copies) in copies.iter_mut().enumerate() {
+                let part = |owner: &Option<[usize; 2]>| match owner {
+                    Some([tile, at]) if *at == cell => (tile * stride) as u8,
+                    _ => NO_LANE,
+                };
+                let of: [u8; LANES] = std::array::from_fn(|lane| part(&owners[lane]));
+                if of != [NO_LANE; LANES] {
+                    copies.push(Copies { place, of });
+                }
+            }
+        }
+        copies
+    }
+}

@@ -1,0 +1,289 @@
+//! A table as the pair loop reads it: the lattice cut into sixteen tiles, one per lane of a vector.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::axis::{Axis, Copies};
+use super::cut::cut;
+use crate::classes::Wanted;
+use crate::kernel::Tap;
+use crate::simd::{LANES, Row};
+use crate::table::domain::Domain;
+use crate::table::extent::{Extent, Site};
+
+/// Copy of a table in which a vector holds the same cell of sixteen tiles.
+///
+/// Samples that move together are then far from each other, and no two of them are neighbours along a row;
+/// what lies next to all sixteen is again a vector (the layout of Boyle et al. 2015, "Grid: a next generation
+/// data parallel C++ QCD library", whose virtual nodes are our tiles).
+#[derive(Clone, Debug)]
+pub(super) struct Tiles {
+    extent: Extent,
+    dims: usize,
+    /// Along time, y and x.
+    axes: [Axis; 3],
+    /// Vectors by sample, frame, row, column, and coordinate; a last one says what is demanded.
+    values: Vec<Cell>,
+    partial: bool,
+    /// Along each axis, where the cells are stored.
+    copies: [Vec<Vec<Copies>>; 3],
+    /// Per cell, the tiles that own a demanded site there: one bit each.
+    owners: Vec<u16>,
+}
+
+/// A vector that lies in one line of the cache.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(super) struct Cell(pub Row);
+
+/// One sample of the same cell of all tiles.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Run {
+    pub sample: usize,
+    /// Along time, y and x.
+    pub cell: [usize; 3],
+    owners: u16,
+}
+
+impl Run {
+    /// Tiles whose sample is theirs to move.
+    #[inline(always)]
+    pub(super) fn lanes(self) -> impl Iterator<Item = usize> {
+        (0..LANES).filter(move |lane| self.owners >> lane & 1 == 1)
+    }
+}
+
+impl Tiles {
+    /// Room for a table, whose samples see others at the offsets of `taps`.
+    pub(super) fn new(extent: Extent, dims: usize, taps: &[Tap], wanted: &Wanted) -> Self {
+        let axes = cut(&extent, taps, wanted);
+        let (partial, cells) = (wanted.is_partial(), axes.iter().map(Axis::cells).product());
+        let stored: usize = axes.iter().map(Axis::stored).product();
+        let values = vec![Cell([0.0; LANES]); extent.spp * stored * (dims + usize::from(partial))];
+        let [_, height, width] = axes.each_ref().map(Axis::tiles);
+        let copies = [
+            axes[0].copies(|lane| lane / width / height, height * width),
+            axes[1].copies(|lane| lane / width % height, width),
+            axes[2].copies(|lane| lane % width, 1),
+        ];
+        let mut tiles = Self { extent, dims, axes, values, partial, copies, owners: vec![0; cells] };
+        if partial {
+            tiles.fill(dims..dims + 1, |site, _| if wanted.site(site) { &[1.0] } else { &[0.0] });
+        }
+        for index in 0..cells {
+            let cell = tiles.run(index).cell;
+            let owns = |lane: &usize| {
+                let tile = tiles.tile(*lane);
+                let owned = (0..3).all(|axis| tiles.axes[axis].owns(tile[axis], cell[axis]));
+                owned && wanted.site(extent.site_index(tiles.site(cell, *lane)))
+            };
+            tiles.owners[index] = (0..LANES).filter(owns).map(|lane| 1 << lane).sum();
+        }
+        tiles
+    }
+
+    /// Vectors per sample: its coordinates, and whether it is demanded.
+    #[inline(always)]
+    pub(super) fn planes(&self) -> usize {
+        self.dims + usize::from(self.partial)
+    }
+
+    pub(super) fn is_partial(&self) -> bool {
+        self.partial
+    }
+
+    /// Number of runs that hold all samples.
+    pub(super) fn runs(&self) -> usize {
+        self.extent.spp * self.owners.len()
+    }
+
+    pub(super) fn run(&self, index: usize) -> Run {
+        let [_, height, width] = self.axes.each_ref().map(Axis::cells);
+        let (sample, cell) = (index / self.owners.len(), index % self.owners.len());
+        let row = cell / width;
+        self.run_at(sample, [row / height, row % height, cell % width])
+    }
+
+    fn run_at(&self, sample: usize, cell: [usize; 3]) -> Run {
+        let [_, height, width] = self.axes.each_ref().map(Axis::cells);
+        Run { sample, cell, owners: self.owners[(cell[0] * height + cell[1]) * width + cell[2]] }
+    }
+
+    /// The tile of a lane, along each axis.
+    fn tile(&self, lane: usize) -> [usize; 3] {
+        let [_, height, width] = self.axes.each_ref().map(Axis::tiles);
+        [lane / width / height, lane / width % height, lane % width]
+    }
+
+    /// The site of a cell in one of the tiles.
+    fn site(&self, cell: [usize; 3], lane: usize) -> Site {
+        let tile = self.tile(lane);
+        let [frame, y, x] = std::array::from_fn(|k| {
+            let axis: &Axis = &self.axes[k];
+            axis.site(tile[k], axis.place(cell[k], 0))
+        });
+        Site { frame, y, x }
+    }
+
+    /// Place of a run's sample in one of the tiles, in a list of all samples.
+    pub(super) fn sample(&self, run: Run, lane: usize) -> usize {
+        self.extent.site_index(self.site(run.cell, lane)) * self.extent.spp + run.sample
+    }
+
+    /// The vectors of a row of cells and its margins, so many sites after a run in time and y.
+    #[inline(always)]
+    pub(super) fn row(&self, sample: usize, run: Run, [dt, dy]: [i32; 2]) -> &[Cell] {
+        let [time, y, x] = &self.axes;
+        let row = self.row_at(sample, time.place(run.cell[0], dt), y.place(run.cell[1], dy));
+        &self.values[row..row + x.stored() * self.planes()]
+    }
+
+    /// Where in its row a vector lies, so many sites after a run in x.
+    #[inline(always)]
+    pub(super) fn column(&self, run: Run, dx: i32) -> usize {
+        self.axes[2].place(run.cell[2], dx) * self.planes()
+    }
+
+    #[inline(always)]
+    fn row_at(&self, sample: usize, time: usize, y: usize) -> usize {
+        let [times, ys, xs] = self.axes.each_ref().map(Axis::stored);
+        ((sample * times + time) * ys + y) * xs * self.planes()
+    }
+
+    /// Copies a table in.
+    pub(super) fn load(&mut self, points: &[f32]) {
+        let Self { dims, extent: Extent { spp, .. }, .. } = *self;
+        self.fill(0..dims, |site, sample| &points[(site * spp + sample) * dims..][..dims]);
+    }
+
+    /// Sets some of the vectors of all samples by site and sample.
+    fn fill<'a>(&mut self, planes: Range<usize>, values: impl Fn(usize, usize) -> &'a [f32] + Sync) {
+        let tiles: [[usize; 3]; LANES] = std::array::from_fn(|lane| self.tile(lane));
+        let (stride, extent, axes) = (self.planes(), self.extent, &self.axes);
+        let [times, ys, xs] = axes.each_ref().map(Axis::stored);
+        let rows = self.values.par_chunks_exact_mut(xs * stride).enumerate().with_min_len(ROWS_PER_TASK);
+        rows.for_each(|(row, cells)| {
+            let (sample, time, y) = (row / ys / times, row / ys % times, row % ys);
+            for (lane, tile) in tiles.iter().enumerate() {
+                let line = axes[0].site(tile[0], time) * extent.height + axes[1].site(tile[1], y);
+                let mut x = axes[2].site(tile[2], 0);
+                for cell in cells.chunks_exact_mut(stride) {
+                    let values = values(line * extent.width + x, sample);
+                    cell[planes.clone()].iter_mut().zip(values).for_each(|(to, from)| to.0[lane] = *from);
+                    x = if x + 1 == extent.width { 0 } else { x + 1 };
+                }
+            }
+        });
+    }
+
+    pub(super) fn dims(&self) -> usize {
+        self.dims
+    }
+
+    pub(super) fn frames(&self) -> usize {
+        self.extent.frames
+    }
+
+    /// Rows of cells.
+    pub(super) fn cell_rows(&self) -> Range<usize> {
+        0..self.runs() / self.axes[2].cells()
+    }
+
+    /// Cells of a row, and their owners.
+    #[inline(always)]
+    pub(super) fn cells_of(&self, row: usize) -> impl Iterator<Item = (&[Cell], u16)> {
+        let width = self.axes[2].cells();
+        let run = self.run(row * width);
+        let begin = self.place(run.sample, run);
+        let cells = self.values[begin..].chunks_exact(self.planes());
+        let first = (row * width) % self.owners.len();
+        cells.zip(self.owners[first..first + width].iter().copied())
+    }
+
+    /// The frame of a row of cells in a lane.
+    pub(super) fn frame_of_row(&self, row: usize, lane: usize) -> usize {
+        let run = self.run(row * self.axes[2].cells());
+        self.axes[0].site(self.tile(lane)[0], self.axes[0].place(run.cell[0], 0))
+    }
+
+    /// The frames of all lanes, by stored place in time.
+    pub(super) fn frames_by_time(&self) -> Vec<[usize; LANES]> {
+        let frame = |time, lane| self.axes[0].site(self.tile(lane)[0], time);
+        (0..self.axes[0].stored()).map(|time| std::array::from_fn(|lane| frame(time, lane))).collect()
+    }
+
+    /// Visits all stored rows: place in time, vectors, and how many belong together.
+    pub(super) fn for_each_stored_row(&mut self, visit: impl Fn(usize, &mut [Cell], usize) + Sync) {
+        let stride = self.planes();
+        let [times, ys, xs] = self.axes.each_ref().map(Axis::stored);
+        let rows = self.values.par_chunks_exact_mut(xs * stride).enumerate().with_min_len(4);
+        rows.for_each(|(row, cells)| visit(row / ys % times, cells, stride));
+    }
+
+    pub(super) fn for_each_stored(&mut self, visit: impl Fn(usize, &mut [Cell]) + Sync) {
+        self.for_each_stored_row(|time, cells, stride| {
+            cells.chunks_exact_mut(stride).for_each(|cell| visit(time, cell));
+        });
+    }
+
+    /// Copies the demanded samples out.
+    pub(super) fn store(&self, points: &mut [f32]) {
+        let Self { extent, dims, ref axes, .. } = *self;
+        let stride = self.planes();
+        let [_, tiles_y, tiles_x] = axes.each_ref().map(Axis::tiles);
+        let rows = points.par_chunks_exact_mut(extent.width * extent.spp * dims).enumerate();
+        rows.with_min_len(ROWS_PER_TASK).for_each(|(line, points)| {
+            let owners = [axes[0].owner(line / extent.height), axes[1].owner(line % extent.height)];
+            let [Some([tile_t, time]), Some([tile_y, y])] = owners else { return };
+            for (x, points) in points.chunks_exact_mut(extent.spp * dims).enumerate() {
+                let Some([tile_x, x]) = axes[2].owner(x) else { continue };
+                let lane = (tile_t * tiles_y + tile_y) * tiles_x + tile_x;
+                let run = self.run_at(0, [time, y, x]);
+                if run.owners >> lane & 1 == 0 {
+                    continue;
+                }
+                for (sample, point) in points.chunks_exact_mut(dims).enumerate() {
+                    let from = &self.values[self.place(sample, run)..][..stride];
+                    point.iter_mut().zip(from).for_each(|(to, from)| *to = from.0[lane]);
+                }
+            }
+        });
+    }
+
+    /// Where the vectors of a run are stored.
+    #[inline(always)]
+    fn place(&self, sample: usize, run: Run) -> usize {
+        let [time, y, _] = std::array::from_fn(|k| self.axes[k].place(run.cell[k], 0));
+        self.row_at(sample, time, y) + self.column(run, 0)
+    }
+
+    /// Moves coordinate `dim` of a run's samples by `motion`, and their copies.
+    #[inline(always)]
+    pub(super) fn shift(&mut self, run: Run, dim: usize, motion: &Row, domain: Domain) {
+        let own = self.place(run.sample, run) + dim;
+        let mut moved = self.values[own].0;
+        for lane in run.lanes() {
+            moved[lane] = match domain { Domain::Interval => super::reflect(moved[lane] + motion[lane]), Domain::Torus => domain.admit(moved[lane] + motion[lane]) };
+        }
+        let [times, ys, xs] = std::array::from_fn(|k| self.copies[k][run.cell[k]].as_slice());
+        let stride = self.planes();
+        for time in times {
+            for y in ys {
+                let row = self.row_at(run.sample, time.place, y.place) + dim;
+                for x in xs {
+                    let Cell(copy) = &mut self.values[row + x.place * stride];
+                    for lane in 0..LANES {
+                        let from = usize::from(time.of[lane] + y.of[lane] + x.of[lane]);
+                        if from < LANES {
+                            copy[lane] = moved[from];
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Rows that are worth handing to a thread.
+const ROWS_PER_TASK: usize = 16;
