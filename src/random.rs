@@ -56,6 +56,10 @@ pub fn generator(seed: u64, purpose: impl Into<u64>, step: u64, index: u64) -> X
     Xoshiro256PlusPlus::from_seed(state)
 }
 
+/// Fractional part of the golden ratio: multiples of it are evenly spread for any count (Weyl, van der
+/// Corput).
+pub(crate) const GOLDEN_RATIO: f64 = 0.618_033_988_749_894_8;
+
 /// A generator for where one is needed in form only.
 #[inline]
 pub(crate) fn unnamed() -> Xoshiro256PlusPlus {

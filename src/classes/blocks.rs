@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::demand::Wanted;
 use super::family::Filters;
+use crate::kernel::Tap;
 use crate::table::extent::Extent;
 
 /// One class per block: its samples alike.
@@ -49,6 +50,11 @@ impl Filters for Blocks {
 
     fn is_partial(&self) -> bool {
         self.wanted.is_partial()
+    }
+
+    /// A pixel by itself is a kernel of one tap.
+    fn taps(&self) -> Option<&[Tap]> {
+        (self.sites == 1).then_some(&[Tap { dt: 0, dy: 0, dx: 0, weight: 1.0 }])
     }
 
     fn run(&self, member: usize) -> Option<Range<u32>> {

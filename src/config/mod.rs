@@ -56,6 +56,9 @@ pub struct Config {
     pub domains: Vec<Domain>,
     /// What is optimised. [`Config::with_kernels`] and [`Config::with_groups`] write the usual ones.
     pub terms: Vec<Term>,
+    /// Whether those include the smaller filters of [`Term::companions`].
+    #[serde(default)]
+    pub companions: bool,
     /// How slices are drawn.
     pub slicing: Slicing,
     /// How steps of slices move the samples.
@@ -77,19 +80,30 @@ impl Config {
     pub fn new(extent: Extent, dims: usize) -> Self {
         let kernel = default_kernel(&extent);
         let groups = DimensionGroup::pairs_and_whole(dims);
-        Self {
+        let config = Self {
             extent,
             dims,
             // More dimensions are refused when the configuration is used; a list of them might not fit the
             // memory.
             domains: vec![Domain::Interval; dims.min(MOST_DIMS)],
-            terms: Term::blue_noise(&[kernel], FilterForm::LevelSets, &groups, &extent),
+            terms: Vec::new(),
+            companions: true,
             slicing: Slicing::default(),
             descent: Descent::default(),
             sweeps: Sweeps::default(),
             balance: Schedule::constant(1.0),
             seed: 0,
+        };
+        config.with_usual_terms(&[kernel], FilterForm::LevelSets, &groups)
+    }
+
+    /// Writes the usual terms.
+    fn with_usual_terms(mut self, kernels: &[Kernel], form: FilterForm, groups: &[DimensionGroup]) -> Self {
+        self.terms = Term::blue_noise(kernels, form, groups, &self.extent);
+        if self.companions {
+            self.terms.extend(Term::companions(kernels, form, groups, &self.extent));
         }
+        self
     }
 
     /// Filters with this kernel instead: see [`Config::with_kernels`].
@@ -103,9 +117,19 @@ impl Config {
     ///
     /// Terms that were set otherwise are replaced.
     #[must_use]
-    pub fn with_kernels(mut self, kernels: &[Kernel]) -> Self {
-        self.terms = Term::blue_noise(kernels, self.form(), &self.groups(), &self.extent);
-        self
+    pub fn with_kernels(self, kernels: &[Kernel]) -> Self {
+        let (form, groups) = (self.form(), self.groups());
+        self.with_usual_terms(kernels, form, &groups)
+    }
+
+    /// Lets the kernels be accompanied by smaller filters ([`Term::companions`]; the default), or leaves them
+    /// alone, as the papers have them.
+    ///
+    /// Terms that were set otherwise are replaced.
+    #[must_use]
+    pub fn with_companions(self, companions: bool) -> Self {
+        let (kernels, form, groups) = (self.kernels(), self.form(), self.groups());
+        Self { companions, ..self }.with_usual_terms(&kernels, form, &groups)
     }
 
     /// Writes the terms for blue noise in these dimension groups. Kernels and the form of the filters stay as
@@ -113,24 +137,24 @@ impl Config {
     ///
     /// Terms that were set otherwise are replaced.
     #[must_use]
-    pub fn with_groups(mut self, groups: &[DimensionGroup]) -> Self {
-        self.terms = Term::blue_noise(&self.kernels(), self.form(), groups, &self.extent);
-        self
+    pub fn with_groups(self, groups: &[DimensionGroup]) -> Self {
+        let (kernels, form) = (self.kernels(), self.form());
+        self.with_usual_terms(&kernels, form, groups)
     }
 
     /// Filters in this form; kernels and dimension groups stay as they are.
     ///
     /// Terms that were set otherwise are replaced.
     #[must_use]
-    pub fn with_form(mut self, form: FilterForm) -> Self {
-        self.terms = Term::blue_noise(&self.kernels(), form, &self.groups(), &self.extent);
-        self
+    pub fn with_form(self, form: FilterForm) -> Self {
+        let (kernels, groups) = (self.kernels(), self.groups());
+        self.with_usual_terms(&kernels, form, &groups)
     }
 
-    /// Optimises these terms.
+    /// Optimises these terms, and no companions.
     #[must_use]
     pub fn with_terms(self, terms: Vec<Term>) -> Self {
-        Self { terms, ..self }
+        Self { terms, companions: false, ..self }
     }
 
     /// Ends every dimension in this way.
@@ -176,10 +200,10 @@ impl Config {
         Self { seed, ..self }
     }
 
-    /// The kernels of the terms, each once; the default one if no term has a kernel.
+    /// The kernels of the terms, each once and without companions; the default one if no term has a kernel.
     pub fn kernels(&self) -> Vec<Kernel> {
         let mut kernels = Vec::new();
-        for (kernel, _) in self.filters() {
+        for (kernel, ..) in self.filters() {
             if !kernels.contains(kernel) {
                 kernels.push(kernel.clone());
             }
@@ -193,7 +217,7 @@ impl Config {
     /// The dimension groups of the terms that have a kernel, each once; the default ones if no term has any.
     pub fn groups(&self) -> Vec<DimensionGroup> {
         let mut groups: Vec<DimensionGroup> = Vec::new();
-        for term in self.terms.iter().filter(|term| matches!(term.classes, Classes::Lattice { .. })) {
+        for (.., term) in self.filters() {
             match groups.iter_mut().find(|group| group.dims == term.dims) {
                 // What the kernels share is the group's.
                 Some(group) => group.weight += term.weight,
@@ -204,12 +228,15 @@ impl Config {
     }
 
     fn form(&self) -> FilterForm {
-        self.filters().next().map_or(FilterForm::default(), |(_, form)| form)
+        self.filters().next().map_or(FilterForm::default(), |(_, form, _)| form)
     }
 
-    fn filters(&self) -> impl Iterator<Item = (&Kernel, FilterForm)> {
-        self.terms.iter().filter_map(|term| match &term.classes {
-            Classes::Lattice { kernel, form } => Some((kernel, *form)),
+    /// Kernels and forms of the terms that have them. Companions come after the balance of what they go with.
+    fn filters(&self) -> impl Iterator<Item = (&Kernel, FilterForm, &Term)> {
+        let is_usual = |term: &&Term| !self.companions || term.role == Role::Descend;
+        let own = self.terms.iter().take_while(move |term| is_usual(term));
+        own.filter_map(|term| match &term.classes {
+            Classes::Lattice { kernel, form } => Some((kernel, *form, term)),
             _ => None,
         })
     }

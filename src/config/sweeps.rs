@@ -30,34 +30,43 @@ pub struct Sweeps {
     /// Step size of a run of sweeps alone. One of `n` sweeps begins no higher than at `√n`, and ends no lower
     /// than at its beginning divided by `n`: few sweeps can neither mend what large steps break nor settle.
     pub rate: Schedule,
-    /// Step size of sweeps that follow slices in a run. Larger ones would undo what the slices have arranged.
+    /// Step size of sweeps that follow slices, or a frame of their own, in a run. Larger ones would undo what
+    /// was arranged.
     pub polish: Schedule,
     /// Pairs held together less than this share of the strongest are left out; in `[0, 1)`.
     pub truncation: f64,
+    /// While a run goes along `rate`, distances up to this times the step size, in units of `r`, count as
+    /// longer than they are: samples pass each other early in a run, and feel every neighbour at its end. At
+    /// least 0, finite; 0 is the exact gradient all along.
+    #[serde(default)]
+    pub softening: f64,
 }
 
 impl Default for Sweeps {
     fn default() -> Self {
-        let [rate, polish] = [2.2, 1.3].map(|first| Schedule::geometric(first, 0.12));
-        Self { rate, polish, truncation: 0.007 }
+        let (rate, polish) = (Schedule::geometric(2.2, 0.2), Schedule::geometric(1.5, 0.25));
+        Self { rate, polish, truncation: 0.007, softening: 0.7 }
     }
 }
 
 impl Sweeps {
-    /// The step size over the sweeps of a run.
-    pub(crate) fn of_a_run(&self, work: Work) -> Schedule {
-        if work.slices_per_class > 0 {
-            return self.polish;
+    /// Step size and softening over the sweeps of a run.
+    pub(crate) fn of_a_run(&self, work: Work) -> (Schedule, f64) {
+        if work.slices_per_class > 0 || work.frame_sweeps > 0 {
+            return (self.polish, 0.0);
         }
         let [first, last] = self.rate.ends();
         let sweeps = work.sweeps.max(1) as f64;
         let first = first.min(sweeps.sqrt());
-        self.rate.between([first, last.max(first / sweeps)])
+        (self.rate.between([first, last.max(first / sweeps)]), self.softening)
     }
 
     pub(crate) fn validate(&self) -> Result<(), RangeError> {
         self.rate.validate()?;
         self.polish.validate()?;
+        let softening = self.softening;
+        let is_good = softening >= 0.0 && softening.is_finite();
+        RangeError::check(is_good, "the softening of sweeps", softening, "at least 0 and finite")?;
         let truncation = self.truncation;
         let is_good = (0.0..1.0).contains(&truncation);
         RangeError::check(is_good, "the truncation of sweeps", truncation, "in [0, 1)")

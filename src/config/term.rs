@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::classes::{Classes, FilterForm};
 use crate::error::RangeError;
-use crate::kernel::Kernel;
+use crate::kernel::{Kernel, TemporalKernel};
 use crate::simd::LANES;
 use crate::table::extent::{Extent, MOST_DIMS};
 use crate::targets::Target;
@@ -19,10 +19,10 @@ const MOST_SLICES: usize = i32::MAX as usize;
 /// use fsot::config::Role;
 /// use fsot::{Config, Extent};
 ///
-/// // The default: a lattice of filters that is descended, and the whole table that is balanced.
+/// // The default: a lattice of filters that is descended; the whole table and both coordinates are balanced.
 /// let config = Config::new(Extent::still(64, 64), 2);
 /// let roles: Vec<Role> = config.terms.iter().map(|term| term.role).collect();
-/// assert_eq!(roles, [Role::Descend, Role::Balance]);
+/// assert_eq!(roles, [Role::Descend, Role::Balance, Role::Balance, Role::Balance]);
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Term {
@@ -105,15 +105,16 @@ impl DimensionGroup {
     }
 }
 
-/// Share of the work that goes to the whole table, and to its frames, relative to the kernels.
+/// Share of the work that goes to the whole table, to its frames, and to single coordinates, relative to the
+/// kernels.
 const BALANCE_WEIGHT: f64 = 0.03;
 
 impl Term {
-    /// The terms for blue-noise error: each group under each kernel, and as much of the whole table and of
-    /// each frame as keeps them unbiased.
+    /// The terms for blue-noise error: each group under each kernel, and as much of the whole table, of each
+    /// frame and of each coordinate as keeps them unbiased up to the faces of the cube.
     ///
     /// Kernels share the work equally; [`Config::with_kernels`](crate::Config::with_kernels) puts them into a
-    /// configuration.
+    /// configuration, together with their [companions](Term::companions).
     pub fn blue_noise(
         kernels: &[Kernel],
         form: FilterForm,
@@ -121,26 +122,101 @@ impl Term {
         extent: &Extent,
     ) -> Vec<Self> {
         let mut terms = Vec::new();
-        let mut add = |classes: Classes, role: Role, share: f64| {
+        for kernel in kernels {
+            let classes = Classes::Lattice { kernel: kernel.clone(), form };
+            let of = |group| Self::uniform(&classes, Role::Descend, group, 1.0 / kernels.len() as f64);
+            terms.extend(groups.iter().map(of));
+        }
+        let mut balance = |classes: Classes, groups: &[DimensionGroup]| {
+            let of = |group| Self::uniform(&classes, Role::Balance, group, BALANCE_WEIGHT);
+            terms.extend(groups.iter().map(of));
+        };
+        balance(Classes::WholeTable, groups);
+        if extent.frames > 1 {
+            balance(Classes::PerFrame, groups);
+        }
+        // A slice says little of a single coordinate next to its faces, where the pull of filters has no
+        // equal from beyond.
+        let mut seen: Vec<usize> = groups.iter().flat_map(|group| group.dims.iter().copied()).collect();
+        seen.sort_unstable();
+        seen.dedup();
+        let alone = |dim: &usize| groups.iter().any(|group| group.dims == [*dim]);
+        let rest: Vec<_> =
+            seen.iter().filter(|dim| !alone(dim)).map(|&dim| DimensionGroup::new([dim])).collect();
+        balance(Classes::WholeTable, &rest);
+        terms
+    }
+
+    /// The smaller filters that go with these kernels, each with a small weight, so that what a scene does
+    /// within a kernel, or what is seen without one, finds good samples too: where a pixel has several
+    /// samples, these by themselves and together with their nearest neighbours (the Gaussian with `sigma_px =
+    /// 1`), and in an animation the single frames, as the spatial half of a kernel sees them.
+    ///
+    /// Weights make the squared errors of all filters comparable: of what a kernel pulls on a sample from its
+    /// own place, the pixel's own samples do a quarter, their neighbours a fifth, and frames three tenths. A
+    /// kernel that is refused has none.
+    pub fn companions(
+        kernels: &[Kernel],
+        form: FilterForm,
+        groups: &[DimensionGroup],
+        extent: &Extent,
+    ) -> Vec<Self> {
+        let mut terms: Vec<Self> = Vec::new();
+        let mut add = |classes: Classes, weight: f64| {
+            if kernels.iter().any(|kernel| classes == Classes::Lattice { kernel: kernel.clone(), form }) {
+                return;
+            }
             for group in groups {
-                terms.push(Self {
-                    classes: classes.clone(),
-                    target: Target::UniformCube,
-                    dims: group.dims.clone(),
-                    weight: share * group.weight,
-                    role,
-                });
+                let term = Self::uniform(&classes, Role::Descend, group, weight);
+                match terms.iter_mut().find(|other| (&other.classes, &other.dims) == (&classes, &group.dims))
+                {
+                    Some(other) => other.weight += term.weight,
+                    None => terms.push(term),
+                }
             }
         };
         for kernel in kernels {
-            add(Classes::Lattice { kernel: kernel.clone(), form }, Role::Descend, 1.0 / kernels.len() as f64);
-        }
-        add(Classes::WholeTable, Role::Balance, BALANCE_WEIGHT);
-        if extent.frames > 1 {
-            add(Classes::PerFrame, Role::Balance, BALANCE_WEIGHT);
+            let Some(own) = concentration(kernel, extent) else { continue };
+            let share = own / kernels.len() as f64;
+            if extent.spp > 1 {
+                add(Classes::PerPixel, PIXEL * share);
+                let near = Kernel::gaussian(1.0);
+                if let Some(of_near) = concentration(&near, extent).filter(|&of_near| of_near > own) {
+                    add(Classes::Lattice { kernel: near, form }, NEAR * share / of_near);
+                }
+            }
+            if extent.frames > 1 {
+                let still = Kernel { temporal: TemporalKernel::None, ..kernel.clone() };
+                if let Some(of_still) = concentration(&still, extent).filter(|&of_still| of_still < 1.0) {
+                    add(Classes::Lattice { kernel: still, form }, STILL * share / of_still);
+                }
+            }
         }
         terms
     }
+
+    fn uniform(classes: &Classes, role: Role, group: &DimensionGroup, share: f64) -> Self {
+        Self {
+            classes: classes.clone(),
+            target: Target::UniformCube,
+            dims: group.dims.clone(),
+            weight: share * group.weight,
+            role,
+        }
+    }
+}
+
+/// What a companion pulls on a sample from its own place, as share of what the kernel does: the pixel's own
+/// samples, the nearest neighbours, the frame.
+const PIXEL: f64 = 0.25;
+const NEAR: f64 = 0.2;
+const STILL: f64 = 0.3;
+
+/// `Σw² / (Σw)²`: the squared error that a kernel leaves of white noise.
+fn concentration(kernel: &Kernel, extent: &Extent) -> Option<f64> {
+    let taps = kernel.taps(extent).ok()?;
+    let sum: f64 = taps.iter().map(|tap| tap.weight).sum();
+    Some(taps.iter().map(|tap| (tap.weight / sum).powi(2)).sum())
 }
 
 /// How slices are drawn.

@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 ///
 /// let config = Config::new(Extent::still(16, 16), 2);
 /// let soon = config.clone().optimize(Until::Seconds(0.01))?;
-/// let slices_then_sweeps = config.optimize(Until::Work(Work { slices_per_class: 64, sweeps: 8 }))?;
+/// let work = Work { slices_per_class: 64, sweeps: 8, ..Work::default() };
+/// let slices_then_sweeps = config.optimize(Until::Work(work))?;
 /// assert_ne!(soon, slices_then_sweeps);
 /// # Ok::<(), fsot::ConfigError>(())
 /// ```
@@ -22,14 +23,15 @@ pub enum Until {
     SlicesPerClass(u64),
     /// After this many epochs, of `directions` slices per pixel and frame each.
     Epochs(u64),
-    /// After this many sweeps.
+    /// After this many sweeps; those of an animation begin with a frame that is swept alone, for about a
+    /// quarter of their time (see [`Work::frame_sweeps`]).
     Sweeps(u64),
-    /// Slices first, then sweeps.
+    /// As much of each.
     Work(Work),
-    /// After about this many seconds, in the sequence that gets furthest by then: sweeps where the objective
-    /// has its closed form, after slices if there is time for both; slices elsewhere. A brief calibration
-    /// fixes how much work fits, schedules follow it, and [`RunReport::work`](crate::RunReport::work) makes
-    /// the very same table again, anywhere.
+    /// After about this many seconds, with what gets furthest by then: sweeps where the objective has its
+    /// closed form, after a fifth of the time for the frame that an animation begins with; slices elsewhere. A
+    /// brief calibration fixes how much work fits, schedules follow it, and
+    /// [`RunReport::work`](crate::RunReport::work) makes the very same table again, anywhere.
     Seconds(f64),
     /// As soon as the mean squared displacement falls by less than the share `improvement` from one window to
     /// the next, and at the latest after `at_most` slices per pixel and frame, the number that schedules
@@ -44,11 +46,12 @@ pub enum Until {
     },
 }
 
-/// An amount of work: slices come first, then sweeps.
+/// An amount of work: the frame that an animation begins with, then slices, then sweeps.
 ///
 /// Slices hold any class and target, and reach the lower bound; sweeps
 /// ([`Optimizer::sweep`](crate::Optimizer::sweep)) take the whole of the objective's directions into account
-/// at once, and are the sooner at a low error.
+/// at once, and are the sooner at a low error. An animation gets furthest from a frame that is good by
+/// itself.
 ///
 /// ```
 /// use fsot::config::Work;
@@ -63,6 +66,11 @@ pub enum Until {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Work {
+    /// Sweeps of one frame by itself, under the spatial part of the filters. Displaced from frame to frame by
+    /// the R2 sequence, it is what the rest of the work starts from, instead of what was there. Nothing for
+    /// stills, for a table that is not demanded whole, and where filters are not a lattice's.
+    #[serde(default)]
+    pub frame_sweeps: u64,
     /// Slices per pixel and frame (rounded up to whole steps).
     pub slices_per_class: u64,
     /// Sweeps over all samples.

@@ -108,6 +108,9 @@ pub struct BoundEstimate {
 /// How much work made a table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RunRecord {
+    /// Sweeps of the frame that an animation began with.
+    #[serde(default)]
+    pub frame_sweeps: u64,
     /// Slices per pixel and frame that the run was planned for; with `steps` the length of its schedules.
     pub slices_per_class: u64,
     /// Sweeps that the run was planned for.

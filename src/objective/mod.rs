@@ -145,10 +145,10 @@ impl Objective {
         self.terms.get(term)?.family.taps()
     }
 
-    /// Whether some balance is over parts of a table that another one holds together.
-    pub(crate) fn balances_are_nested(&self) -> bool {
-        let balances = || self.terms.iter().filter(|term| term.spec.role == Role::Balance);
-        balances().any(|term| term.family.visits() > 1) && balances().any(|term| term.family.visits() == 1)
+    /// Whether a balance takes slices beside sweeps.
+    pub(crate) fn has_balances_beside_sweeps(&self) -> bool {
+        let mut balances = self.terms.iter().filter(|term| term.spec.role == Role::Balance);
+        balances.any(|term| !self.is_balanced_in_sweeps(term))
     }
 
     /// Whether sweeps balance a term by themselves, without slices.

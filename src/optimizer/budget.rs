@@ -5,19 +5,24 @@ use std::time::{Duration, Instant};
 use super::Optimizer;
 use crate::config::{Until, Work};
 use crate::error::{ConfigError, RangeError};
-use crate::sweeps;
+use crate::sweeps::{self, Motion};
 
-/// Slices per pixel and frame from which on it is worth beginning with them.
-const ENOUGH_SLICES: f64 = 64.0;
+/// Share of the time of an animation that its first frame gets: the frame's quality is what single frames
+/// keep.
+const FRAME_SHARE: f64 = 0.2;
+/// Sweeps after which a frame is not worth more of the time.
+const MOST_FRAME_SWEEPS: f64 = 2000.0;
 
 impl Optimizer {
     /// The work of a run.
     pub(super) fn plan(&mut self, until: Until) -> Result<Work, ConfigError> {
-        let slices = |slices_per_class| Work { slices_per_class, sweeps: 0 };
+        let slices = |slices_per_class| Work { slices_per_class, ..Work::default() };
         let work = match until {
             Until::SlicesPerClass(slices_per_class) => slices(slices_per_class),
             Until::Epochs(epochs) => slices(epochs.saturating_mul(self.config.slicing.directions as u64)),
-            Until::Sweeps(sweeps) => Work { slices_per_class: 0, sweeps },
+            Until::Sweeps(sweeps) => {
+                Work { frame_sweeps: self.frame_sweeps(sweeps)?, sweeps, ..Work::default() }
+            }
             Until::Work(work) => work,
             Until::Converged { improvement, window_steps, at_most } => {
                 let is_share = (0.0..1.0).contains(&improvement);
@@ -37,42 +42,62 @@ impl Optimizer {
         Ok(work)
     }
 
-    /// The work that fits into a time: all of it sweeps, unless half of it is enough for a good number of
-    /// slices.
+    /// Sweeps of a frame that take about as long as their share beside those of the animation.
+    fn frame_sweeps(&mut self, sweeps: u64) -> Result<u64, ConfigError> {
+        sweeps::check(&self.objective)?;
+        let frame = if self.fresh { self.of_a_frame()? } else { None };
+        let Some(mut frame) = frame else { return Ok(0) };
+        let cost = self.sweeper()?.pairs() / frame.sweeper()?.pairs();
+        let share = FRAME_SHARE / (1.0 - FRAME_SHARE);
+        Ok((sweeps as f64 * cost * share).ceil().min(MOST_FRAME_SWEEPS) as u64)
+    }
+
+    /// The work that fits into a time.
     fn fit(&mut self, seconds: f64) -> Result<Work, ConfigError> {
-        let per_step = self.objective.slices_per_class_and_step();
         if sweeps::check(&self.objective).is_err() {
-            let slices = seconds / self.seconds_per_batch() * per_step;
-            return Ok(Work { slices_per_class: slices.max(1.0) as u64, sweeps: 0 });
+            let slices = seconds / self.seconds_per_batch() * self.objective.slices_per_class_and_step();
+            return Ok(Work { slices_per_class: slices.max(1.0) as u64, ..Work::default() });
         }
-        let seconds_per_sweep = self.seconds_per_sweep()?;
-        let slices = 0.5 * seconds / self.seconds_per_batch() * per_step;
-        let (slices, share) = if slices >= ENOUGH_SLICES { (slices as u64, 0.5) } else { (0, 1.0) };
-        let sweeps = (share * seconds / seconds_per_sweep).max(1.0) as u64;
-        Ok(Work { slices_per_class: slices, sweeps })
+        let mut work = Work::default();
+        let mut rest = seconds;
+        let frame = if self.fresh { self.of_a_frame()? } else { None };
+        if let Some(mut frame) = frame {
+            let per_sweep = frame.seconds_per_sweep()?;
+            let sweeps = (FRAME_SHARE * seconds / per_sweep).clamp(1.0, MOST_FRAME_SWEEPS).floor();
+            work.frame_sweeps = sweeps as u64;
+            rest -= sweeps * per_sweep;
+        }
+        work.sweeps = (rest / self.seconds_per_sweep()?).max(1.0) as u64;
+        Ok(work)
     }
 
     /// Times a few steps that leave the table as it is.
     fn seconds_per_batch(&mut self) -> f64 {
-        let steps = self.steps;
+        let (fresh, steps) = (self.fresh, self.steps);
         // The first step grows the buffers and does not count.
         self.step_in_pool(0.0, 0.0);
         let seconds = mean_seconds(|| {
             self.step_in_pool(0.0, 0.0);
         });
-        self.steps = steps;
+        (self.fresh, self.steps) = (fresh, steps);
         seconds
     }
 
-    /// Times a few sweeps that leave the table as it is.
+    /// Times a few steps of sweeps that leave the table as it is.
     fn seconds_per_sweep(&mut self) -> Result<f64, ConfigError> {
-        let swept = self.swept;
-        self.sweep_step(0, 0.0, 0.0)?;
-        let mut outcome = Ok(0.0);
-        let seconds = mean_seconds(|| outcome = self.sweep_in_pool(0.0, 0.0));
-        self.swept = swept;
-        self.sweeper = None;
-        outcome.map(|_| seconds)
+        let (fresh, swept) = (self.fresh, self.swept);
+        let steps = self.sweeper()?.steps();
+        let mut outcome = Ok(());
+        let still = Motion { rate: 0.0, softening: 0.0, balance: 0.0 };
+        // The first step makes the copy and does not count.
+        self.sweep_step(0, still)?;
+        let mut step = 0;
+        let seconds = mean_seconds(|| {
+            step = (step + 1) % steps;
+            outcome = self.sweep_step(step, still).map(|_| ());
+        });
+        (self.fresh, self.swept, self.sweeper) = (fresh, swept, None);
+        outcome.map(|()| steps as f64 * seconds)
     }
 }
 

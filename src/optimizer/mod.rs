@@ -1,6 +1,7 @@
 //! The optimiser: a table on its way, steps and runs.
 
 mod budget;
+mod frame;
 mod record;
 mod report;
 mod run;
@@ -11,7 +12,7 @@ use crate::config::{Config, Role, Until};
 use crate::error::ConfigError;
 use crate::objective::Objective;
 use crate::slices::{Picked, Slices, Step};
-use crate::sweeps::{self, MeanSquare, Sweeper};
+use crate::sweeps::{MeanSquare, Motion, Sweeper};
 use crate::table::SampleTable;
 
 /// Optimises a table of white noise, or a given one.
@@ -40,6 +41,8 @@ pub struct Optimizer {
     /// Planned when it is first needed.
     sweeper: Option<Sweeper>,
     swept: u64,
+    /// Whether the points are still those that this optimiser began with.
+    fresh: bool,
 }
 
 impl std::fmt::Debug for Optimizer {
@@ -94,7 +97,7 @@ impl Optimizer {
         let mut points = crate::random::uniforms(config.seed, config.extent.samples() * config.dims);
         objective.place(&mut points);
         let slices = Slices::new(config.descent, points.len());
-        Ok(Self { slices, steps: 0, sweeper: None, swept: 0, points, objective, config })
+        Ok(Self { slices, steps: 0, sweeper: None, swept: 0, fresh: true, points, objective, config })
     }
 
     /// Starts from a table, as made by an earlier run.
@@ -116,6 +119,7 @@ impl Optimizer {
         self.points = table.into_values();
         self.slices = Slices::new(self.config.descent, self.points.len());
         self.sweeper = None;
+        self.fresh = false;
         Ok(())
     }
 
@@ -168,13 +172,16 @@ impl Optimizer {
         if let Some(sweeper) = &mut self.sweeper {
             sweeper.outdate();
         }
+        self.fresh = false;
         self.slices.step(&self.objective, &mut self.points, &step)
     }
 
     /// Sweeps once over all samples: each moves `rate` times (at most as far as settles, see
     /// [`Sweeps`](crate::config::Sweeps)) along the gradient of the objective over all slices at once
-    /// ([`Objective::cramer`]). Half-way and at its end one slice of every class in the role of
-    /// [`Role::Balance`] moves them `balance` of the way.
+    /// ([`Objective::cramer`]). At its end, and half-way where there are many samples, what is balanced moves
+    /// `balance` of the way: the whole table and its frames along a line or by their low frequencies, single
+    /// coordinates by their distribution function, other classes in the role of [`Role::Balance`] along one
+    /// slice each.
     ///
     /// Returns the root mean square pull on a coordinate.
     ///
@@ -186,37 +193,40 @@ impl Optimizer {
 
     fn sweep_in_pool(&mut self, rate: f64, balance: f64) -> Result<f64, ConfigError> {
         let mut pulls = MeanSquare::default();
-        for step in 0..sweeps::STEPS {
-            pulls += self.sweep_step(step, rate, balance)?;
+        for step in 0..self.sweeper()?.steps() {
+            pulls += self.sweep_step(step, Motion { rate, softening: 0.0, balance })?;
         }
         self.fetch();
         Ok(pulls.root())
     }
 
+    /// The sweeps of the objective, planned.
+    fn sweeper(&mut self) -> Result<&mut Sweeper, ConfigError> {
+        match &mut self.sweeper {
+            Some(sweeper) => Ok(sweeper),
+            none => Ok(none.insert(Sweeper::new(&self.objective, &self.config.sweeps)?)),
+        }
+    }
+
     /// One step of a sweep. Returns what it pulled.
-    fn sweep_step(&mut self, step: usize, rate: f64, balance: f64) -> Result<MeanSquare, ConfigError> {
-        let Self { objective, config, points, sweeper, swept, .. } = self;
-        let Config { domains, seed, sweeps, .. } = config;
-        let sweeper = match sweeper {
-            Some(sweeper) => sweeper,
-            none => none.insert(Sweeper::new(objective, sweeps)?),
+    fn sweep_step(&mut self, step: usize, motion: Motion) -> Result<MeanSquare, ConfigError> {
+        let (seed, sweep) = (self.config.seed, self.swept);
+        self.sweeper()?;
+        let Self { sweeper: Some(sweeper), points, config, .. } = self else {
+            unreachable!("it was planned")
         };
         if step == 0 {
-            sweeper.shuffle(*seed, *swept);
+            sweeper.shuffle(seed, sweep);
             // Also one that is broken off is not repeated.
-            *swept += 1;
+            self.swept += 1;
         }
         sweeper.load(points);
-        let pulls = sweeper.step(step, rate, domains);
-        if (step + 1).is_multiple_of(sweeps::STEPS / balances()) {
-            let turn = *swept * balances() as u64 + (step / (sweeps::STEPS / balances())) as u64;
-            sweeper.balance(turn, balance);
-            let slices = objective.terms.iter().any(|term| term.spec.role == Role::Balance && !objective.is_balanced_in_sweeps(term));
-            if slices {
-                sweeper.store(points);
-                let turn = *swept * balances() as u64 + (step / (sweeps::STEPS / balances())) as u64;
-                self.balance(turn, balance);
-            }
+        let pulls = sweeper.step(step, motion, &config.domains);
+        let is_last = step + 1 == sweeper.steps();
+        self.fresh = false;
+        if is_last && self.objective.has_balances_beside_sweeps() {
+            self.fetch();
+            self.advance(self.swept, &[Picked::Each(Role::Balance)], 0.0, motion.balance);
         }
         Ok(pulls)
     }
@@ -228,24 +238,14 @@ impl Optimizer {
         }
     }
 
-    /// Moves the samples `share` of the way along one slice of every class in the role of [`Role::Balance`].
-    fn balance(&mut self, turn: u64, share: f64) {
-        self.advance(turn, &[Picked::Each(Role::Balance)], 0.0, share);
-    }
-
-    /// Brings the balances within each other, of frames and of the whole table, to an agreement after the
-    /// last sweep.
-    fn settle(&mut self, sweeps: u64, share: f64) {
-        let n = std::env::var("SETTLE").map_or(0, |v| v.parse().unwrap());
-        for _ in 0..n { self.sweeper.as_mut().unwrap().balance(0, share); }
+    /// Makes marginals exact that sweeps have brought close.
+    fn settle(&mut self) {
+        self.fetch();
+        let Self { sweeper: Some(sweeper), objective, points, config, .. } = self else { return };
+        let spp = config.extent.spp;
+        let is_wanted = |&sample: &u32| objective.wanted.site(sample as usize / spp);
+        let samples: Vec<u32> = (0..config.extent.samples() as u32).filter(is_wanted).collect();
+        sweeper.settle(points, &samples);
+        sweeper.outdate();
     }
 }
-fn balances() -> usize { std::env::var("BAL").map_or(2, |v| v.parse().unwrap()) }
-
-/// Turns of the balance per sweep: with one alone, the bias is three times as large.
-const BALANCES: usize = 2;
-
-/// Turns of nested balances after the last sweep, at most as many as the sweeps had. 64×64×10, 200 slices and
-/// 100 sweeps: they bring the bias from 0.34 to 0.19 and the filtered error from 0.1395 to 0.1407; 16 turns
-/// bring 0.08 and 0.1412.
-const SETTLING_TURNS: u64 = 8;

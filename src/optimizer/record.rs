@@ -31,8 +31,9 @@ impl Optimizer {
 
 impl From<&RunReport> for RunRecord {
     fn from(report: &RunReport) -> Self {
-        let Work { slices_per_class, sweeps } = report.work;
+        let Work { frame_sweeps, slices_per_class, sweeps } = report.work;
         Self {
+            frame_sweeps,
             slices_per_class,
             sweeps,
             ended_early: report.ended != EndReason::Finished,

@@ -3,6 +3,8 @@
 use std::sync::OnceLock;
 use std::time::Duration;
 
+use super::frame::displaced;
+
 use crate::config::{Config, EndReason, Role, Work};
 use crate::objective::{Objective, Slice};
 use crate::sweeps::Sweeper;
@@ -119,7 +121,9 @@ impl StepReport<'_> {
         if let Some(sweeper) = self.current.sweeper {
             sweeper.write_to(&mut points);
         }
-        points
+        let Config { extent, dims, .. } = *self.current.config;
+        // The frame that an animation begins with stands for all of them.
+        if points.len() < extent.samples() * dims { displaced(extent, &points) } else { points }
     }
 }
 

@@ -4,12 +4,13 @@ use std::ops::ControlFlow;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
+use super::frame::displaced;
 use super::report::{Current, Plateau, RunReport, StepReport};
 use super::{Optimizer, SliceStep};
 use crate::config::{EndReason, Until, Work};
 use crate::error::ConfigError;
 use crate::slices::Slices;
-use crate::sweeps;
+use crate::sweeps::Motion;
 
 impl Optimizer {
     /// Takes steps until `until`: see [`Optimizer::run_observed`].
@@ -32,30 +33,57 @@ impl Optimizer {
     pub fn run_observed(
         &mut self,
         until: Until,
-        observe: impl FnMut(&StepReport) -> ControlFlow<()> + Send,
+        mut observe: impl FnMut(&StepReport) -> ControlFlow<()> + Send,
     ) -> Result<RunReport, ConfigError> {
         // On a thread of the pool from here on, instead of going there and back for each step.
-        rayon::scope(|_| self.run_in_pool(until, observe))
+        rayon::scope(|_| self.run_in_pool(until, &mut observe))
     }
 
     fn run_in_pool(
         &mut self,
         until: Until,
-        mut observe: impl FnMut(&StepReport) -> ControlFlow<()>,
+        observe: &mut dyn FnMut(&StepReport) -> ControlFlow<()>,
     ) -> Result<RunReport, ConfigError> {
         // A closure that panicked in an earlier run may have left one behind.
         self.sweeper = None;
         let work = self.plan(until)?;
-        let Work { slices_per_class, sweeps } = work;
+        let Work { frame_sweeps, slices_per_class, sweeps } = work;
+        let frame = if frame_sweeps > 0 { self.of_a_frame()? } else { None };
+        let frame_sweeps = if frame.is_some() { frame_sweeps } else { 0 };
         let per_step = self.objective.slices_per_class_and_step();
         let batches = (slices_per_class as f64 / per_step).ceil() as u64;
-        let steps = batches.saturating_add(sweeps.saturating_mul(sweeps::STEPS as u64));
+        let steps_per_sweep = if sweeps > 0 { self.sweeper()?.steps() } else { 1 };
+        let swept = sweeps.saturating_mul(steps_per_sweep as u64);
+        let steps = frame_sweeps.saturating_add(batches).saturating_add(swept);
         self.slices = Slices::new(self.config.descent, self.points.len());
         let begin = Instant::now();
         let (mut plateau, loss_slices) = (Plateau::default(), OnceLock::new());
         let (ended, elapsed) = (EndReason::Finished, Duration::ZERO);
         let mut report = RunReport { ended, steps: 0, slices: 0, work, elapsed };
-        for step in 0..steps {
+        if let Some(mut frame) = frame {
+            let per_sweep = frame.sweeper()?.steps() as u64;
+            let work = Work { sweeps: frame_sweeps, ..Work::default() };
+            let of_frame = frame.run_in_pool(Until::Work(work), &mut |seen| {
+                // A frame's steps are short: one report a sweep.
+                if !seen.step.is_multiple_of(per_sweep) {
+                    return ControlFlow::Continue(());
+                }
+                let of_all = Current {
+                    config: &self.config,
+                    objective: &self.objective,
+                    loss_slices: &loss_slices,
+                    ..seen.current
+                };
+                let elapsed = begin.elapsed();
+                observe(&StepReport { step: seen.step / per_sweep, steps, elapsed, current: of_all, ..*seen })
+            })?;
+            report.steps = of_frame.steps / per_sweep;
+            report.ended = of_frame.ended;
+            self.points = displaced(self.config.extent, frame.points());
+            self.fresh = false;
+        }
+        let rest = if report.ended == EndReason::Finished { batches + swept } else { 0 };
+        for step in 0..rest {
             let (displacement, rate) = if step < batches {
                 let progress = step as f64 / batches as f64;
                 let rate = self.config.descent.rate().at(progress);
@@ -68,10 +96,11 @@ impl Optimizer {
                     // Sweeps need the room that batches have taken for themselves.
                     self.slices.release();
                 }
-                let progress = (step - batches) as f64 / (steps - batches) as f64;
-                let rate = self.config.sweeps.of_a_run(work).at(progress);
-                let part = (step - batches) as usize % sweeps::STEPS;
-                (self.sweep_step(part, rate, self.config.balance.at(progress))?.root(), rate)
+                let progress = (step - batches) as f64 / swept as f64;
+                let (rates, softening) = self.config.sweeps.of_a_run(work);
+                let (rate, balance) = (rates.at(progress), self.config.balance.at(progress));
+                let part = (step - batches) as usize % steps_per_sweep;
+                (self.sweep_step(part, Motion { rate, softening, balance })?.root(), rate)
             };
             report.steps += 1;
             let current = Current {
@@ -81,7 +110,7 @@ impl Optimizer {
                 sweeper: self.sweeper.as_ref(),
                 loss_slices: &loss_slices,
             };
-            let (step, slices, elapsed) = (step + 1, report.slices, begin.elapsed());
+            let (step, slices, elapsed) = (report.steps, report.slices, begin.elapsed());
             let seen = StepReport { step, steps, slices, displacement, rate, elapsed, current };
             if observe(&seen).is_break() {
                 report.ended = EndReason::Stopped;
@@ -95,12 +124,10 @@ impl Optimizer {
             }
         }
         if sweeps > 0 && report.ended == EndReason::Finished {
-            self.settle(sweeps, self.config.balance.at(1.0));
+            self.settle();
         }
-        if let Some(sweeper) = &mut self.sweeper {
-            // A run may be broken off between two balances.
-            sweeper.store(&mut self.points);
-        }
+        // A run may be broken off between two balances.
+        self.fetch();
         report.elapsed = begin.elapsed();
         // Nobody needs the buffers until the next run.
         self.slices.release();

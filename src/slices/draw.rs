@@ -7,7 +7,7 @@ use crate::classes::FilterFamily;
 use crate::config::Role;
 use crate::directions::Directions;
 use crate::objective::{Objective, Slice};
-use crate::random::{self, Purpose};
+use crate::random::{self, GOLDEN_RATIO, Purpose};
 use crate::table::domain::Domain;
 
 /// One subset of a step, before its samples and directions are looked up.
@@ -27,10 +27,6 @@ pub(crate) struct VisitOrder {
     epoch: Option<u64>,
     members: Vec<u32>,
 }
-
-/// Fractional part of the golden ratio: multiples of it are evenly spread for any count (Weyl, van der
-/// Corput).
-const GOLDEN_RATIO: f64 = 0.618_033_988_749_894_8;
 
 /// Which subsets are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

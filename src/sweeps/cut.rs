@@ -14,7 +14,8 @@ pub(super) fn cut(extent: &Extent, taps: &[Tap], wanted: &Wanted) -> [Axis; 3] {
     let lens = [extent.frames, extent.height, extent.width];
     let windows = windows(extent, wanted);
     let offset = |tap: &Tap| [tap.dt, tap.dy, tap.dx];
-    let reach = |axis: usize| taps.iter().map(|tap| offset(tap)[axis].unsigned_abs() as usize).max().unwrap_or(0);
+    let reach =
+        |axis: usize| taps.iter().map(|tap| offset(tap)[axis].unsigned_abs() as usize).max().unwrap_or(0);
     let axes = |tiles: [usize; 3]| -> [Axis; 3] {
         std::array::from_fn(|axis| {
             // Rows are read without asking where they wrap.

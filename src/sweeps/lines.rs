@@ -4,6 +4,7 @@
 use pulp::{Arch, NullaryFnOnce};
 use rayon::prelude::*;
 
+use super::reflect;
 use super::tiles::{Cell, Tiles};
 use crate::laws::Projected;
 use crate::simd::{LANES, Row};
@@ -25,7 +26,11 @@ impl Line {
         let law = Projected::of_cube(direction);
         let (lowest, highest) = law.support();
         Self {
-            components: dims.iter().copied().zip(direction.iter().map(|&component| component as f32)).collect(),
+            components: dims
+                .iter()
+                .copied()
+                .zip(direction.iter().map(|&component| component as f32))
+                .collect(),
             lowest: lowest as f32,
             scale: (bins as f64 / (highest - lowest)) as f32,
             law,
@@ -34,7 +39,7 @@ impl Line {
     }
 
     /// Moves all samples, or those of each frame, `share` of the way.
-    pub(super) fn advance(&self, arch: Arch, tiles: &mut Tiles, per_frame: bool, share: f32) {
+    pub(super) fn advance(&self, arch: Arch, tiles: &mut Tiles, per_frame: bool, share: f64) {
         let frames = if per_frame { tiles.frames() } else { 1 };
         let rows = tiles.cell_rows();
         let parts = PARTS.min(rows.len());
@@ -54,23 +59,25 @@ impl Line {
         for counts in counts {
             sum.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
         }
-        let motions: Vec<f32> = sum.chunks_exact(self.bins).flat_map(|counts| self.motions(counts, share)).collect();
+        let motions: Vec<f32> =
+            sum.chunks_exact(self.bins).flat_map(|counts| self.motions(counts, share)).collect();
         let frames = tiles.frames_by_time();
-        tiles.for_each_stored_row(|time, cells, stride| {
-            let firsts = frames[time].map(|frame| if per_frame { (frame * (self.bins + 1)) as u32 } else { 0 });
+        tiles.for_each_row(|time, _, cells, stride| {
+            let firsts =
+                frames[time].map(|frame| if per_frame { (frame * (self.bins + 1)) as u32 } else { 0 });
             arch.dispatch(Move { line: self, motions: &motions, firsts, cells, stride });
         });
     }
 
     /// What moves the samples at the boundaries of the bins to where the law has as much below.
-    fn motions(&self, counts: &[u32], share: f32) -> Vec<f32> {
+    fn motions(&self, counts: &[u32], share: f64) -> Vec<f32> {
         let total: u32 = counts.iter().sum();
         let (lowest, highest) = self.law.support();
         let mut below = 0;
         let motion = |(edge, count): (usize, u32)| {
             below += count;
             let at = lowest + (highest - lowest) * edge as f64 / self.bins as f64;
-            share * (self.law.quantile(f64::from(below) / f64::from(total.max(1))) - at) as f32
+            (share * (self.law.quantile(f64::from(below) / f64::from(total.max(1))) - at)) as f32
         };
         let mut motions = vec![0.0];
         motions.extend((1..).zip(counts.iter().copied()).map(motion));
@@ -116,8 +123,7 @@ impl NullaryFnOnce for Count<'_> {
     #[inline(always)]
     fn call(self) {
         let Self { line, tiles, per_frame, row, counts } = self;
-        let frame = |lane| if per_frame { tiles.frame_of_row(row, lane) * line.bins } else { 0 };
-        let firsts: [usize; LANES] = std::array::from_fn(frame);
+        let firsts = tiles.frames_of_row(row).map(|frame| if per_frame { frame * line.bins } else { 0 });
         for (cell, owners) in tiles.cells_of(row) {
             let (bins, _) = line.place(cell);
             for lane in 0..LANES {
@@ -152,7 +158,7 @@ impl NullaryFnOnce for Move<'_> {
             for &(dim, component) in &line.components {
                 let Cell(values) = &mut cell[dim];
                 for lane in 0..LANES {
-                    values[lane] = super::reflect(values[lane] + component * along[lane]);
+                    values[lane] = reflect(values[lane] + component * along[lane]);
                 }
             }
         }

@@ -19,14 +19,14 @@ mod axis;
 mod balance;
 mod cut;
 mod exact;
+mod field;
 mod lines;
 mod modes;
-mod field;
 mod pairs;
 mod sweeper;
 mod tiles;
 
-pub(crate) use sweeper::{MeanSquare, STEPS, Sweeper};
+pub(crate) use sweeper::{MeanSquare, Motion, Sweeper};
 
 use crate::config::Role;
 use crate::error::ConfigError;
@@ -55,6 +55,7 @@ pub(crate) fn check(objective: &Objective) -> Result<(), ConfigError> {
 
 /// Brings a coordinate that has left `[0, 1)` back by the way it went, as a mirror would.
 #[inline(always)]
+#[allow(clippy::manual_clamp)] // `clamp` would let NaN through
 fn reflect(coordinate: f32) -> f32 {
     let above = coordinate.abs();
     let inside = 1.0 - (1.0 - above).abs();

@@ -11,6 +11,11 @@
 
 use std::f32::consts::PI;
 
+use pulp::{Arch, NullaryFnOnce};
+use rayon::prelude::*;
+
+use super::reflect;
+use super::tiles::{Cell, Tiles};
 use crate::simd::{LANES, Row};
 
 /// Products of cosines in some dimensions of a table.
@@ -30,16 +35,15 @@ struct Mode {
     pulls: Vec<f32>,
 }
 
-/// Sum of frequencies up to which modes are silenced, by the number of dimensions: as many modes as cost less
-/// than the pairs of a sample.
-fn degree(dims: usize) -> usize {
-    if let Ok(v) = std::env::var("DEGREE") { return v.parse().unwrap(); }
+/// Which modes are silenced: all up to a sum of frequencies, and even ones up to a higher one. What the pulls
+/// of filters do to the density has the symmetries of the cube, and those are even along every dimension;
+/// odd modes are but noise.
+fn degrees(dims: usize) -> [usize; 2] {
     match dims {
-        1 | 2 => 6,
-        3 => 5,
-        4..=6 => 4,
-        7..=12 => 3,
-        _ => 2,
+        1..=4 => [3, 10],
+        5..=8 => [2, 6],
+        9..=16 => [2, 4],
+        _ => [1, 2],
     }
 }
 
@@ -52,11 +56,12 @@ struct Wave {
 
 /// Room for the waves of a vector.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Waves(Vec<Wave>);
+struct Waves(Vec<Wave>);
 
 impl Modes {
     pub(super) fn new(dims: &[usize]) -> Self {
-        let highest = degree(dims.len());
+        let [any, even] = degrees(dims.len());
+        let highest = any.max(even);
         let mut modes = Vec::new();
         let mut frequencies = vec![0; dims.len()];
         // Counts up, the first frequency fastest, and skips what exceeds the degree.
@@ -71,17 +76,44 @@ impl Modes {
                 }
                 frequencies[place] += 1;
             }
-            modes.push(Mode::new(&frequencies));
+            let is_even = frequencies.iter().all(|frequency| frequency % 2 == 0);
+            if is_even || frequencies.iter().sum::<usize>() <= any {
+                modes.push(Mode::new(&frequencies));
+            }
         }
     }
 
-    pub(super) fn len(&self) -> usize {
-        self.modes.len()
+    /// Moves all samples, or those of each frame, `share` of the way to where the modes are silent.
+    pub(super) fn advance(&self, arch: Arch, tiles: &mut Tiles, per_frame: bool, share: f64) {
+        let len = self.modes.len();
+        let frame = |frame: usize| if per_frame { frame * (len + 1) } else { 0 };
+        // Added up in the order of the rows, whatever the threads.
+        let rows = tiles.cell_rows().into_par_iter();
+        let sums: Vec<Vec<Row>> = rows.map(|row| arch.dispatch(Sum { modes: self, tiles, row })).collect();
+        let mut means = vec![0.0_f64; frame(tiles.frames() - 1) + len + 1];
+        for (row, sums) in sums.iter().enumerate() {
+            for (lane, of) in tiles.frames_of_row(row).into_iter().enumerate() {
+                let means = &mut means[frame(of)..];
+                means.iter_mut().zip(sums).for_each(|(mean, sum)| *mean += f64::from(sum[lane]));
+            }
+        }
+        for means in means.chunks_exact_mut(len + 1) {
+            let (count, means) = means.split_last_mut().expect("the last is the number of samples");
+            means.iter_mut().for_each(|mean| *mean *= share / count.max(1.0));
+        }
+        let of_lanes = |frames: &[usize; LANES]| -> Vec<Row> {
+            (0..len).map(|mode| frames.map(|of| means[frame(of) + mode] as f32)).collect()
+        };
+        let means: Vec<Vec<Row>> = tiles.frames_by_time().iter().map(of_lanes).collect();
+        tiles.for_each_row(|time, dims, cells, stride| {
+            arch.dispatch(Silence { modes: self, means: &means[time], dims, cells, stride });
+        });
     }
 
-    /// Adds every mode's values at the samples of a vector, whose coordinates are given, times `counts`.
+    /// Adds every mode's values at the samples of a vector, whose coordinates are given, times `counts`, and then
+    /// the counts.
     #[inline(always)]
-    pub(super) fn add(&self, at: impl Fn(usize) -> Row, counts: &Row, waves: &mut Waves, sums: &mut [Row]) {
+    fn add(&self, at: impl Fn(usize) -> Row, counts: &Row, waves: &mut Waves, sums: &mut [Row]) {
         self.wave(at, waves);
         for (sum, mode) in sums.iter_mut().zip(&self.modes) {
             let mut product = *counts;
@@ -95,11 +127,15 @@ impl Modes {
                 sum[lane] += product[lane];
             }
         }
+        let count = &mut sums[self.modes.len()];
+        for lane in 0..LANES {
+            count[lane] += counts[lane];
+        }
     }
 
     /// Adds to `motions`, a vector per dimension of the table, what silences modes of these means.
     #[inline(always)]
-    pub(super) fn silence(&self, at: impl Fn(usize) -> Row, means: &[Row], waves: &mut Waves, motions: &mut [Row]) {
+    fn silence(&self, at: impl Fn(usize) -> Row, means: &[Row], waves: &mut Waves, motions: &mut [Row]) {
         self.wave(at, waves);
         for (mean, mode) in means.iter().zip(&self.modes) {
             for (&(dim, frequency), pull) in mode.factors.iter().zip(&mode.pulls) {
@@ -155,14 +191,67 @@ impl Wave {
     #[inline(always)]
     fn of(at: &Row) -> Self {
         let mut wave = Self { cos: [0.0; LANES], sin: [0.0; LANES] };
-        for lane in 0..LANES {
-            let angle = PI * (at[lane] - 0.5);
+        for (lane, at) in at.iter().enumerate() {
+            let angle = PI * (at - 0.5);
             let square = angle * angle;
-            let odd = 1.0 + square * (-1.0 / 6.0 + square * (1.0 / 120.0 + square * (-1.0 / 5040.0 + square / 362_880.0)));
-            let even = 1.0 + square * (-0.5 + square * (1.0 / 24.0 + square * (-1.0 / 720.0 + square / 40_320.0)));
+            let odd = 1.0
+                + square
+                    * (-1.0 / 6.0 + square * (1.0 / 120.0 + square * (-1.0 / 5040.0 + square / 362_880.0)));
+            let even =
+                1.0 + square * (-0.5 + square * (1.0 / 24.0 + square * (-1.0 / 720.0 + square / 40_320.0)));
             wave.cos[lane] = -angle * odd;
             wave.sin[lane] = even;
         }
         wave
+    }
+}
+
+/// Sums of all modes over a row of cells, and the number of samples there.
+struct Sum<'a> {
+    modes: &'a Modes,
+    tiles: &'a Tiles,
+    row: usize,
+}
+
+impl NullaryFnOnce for Sum<'_> {
+    type Output = Vec<Row>;
+
+    #[inline(always)]
+    fn call(self) -> Vec<Row> {
+        let Self { modes, tiles, row } = self;
+        let (mut sums, mut waves) = (vec![[0.0; LANES]; modes.modes.len() + 1], Waves::default());
+        for (cell, owners) in tiles.cells_of(row) {
+            let counts = std::array::from_fn(|lane| f32::from(owners >> lane & 1));
+            modes.add(|dim| cell[dim].0, &counts, &mut waves, &mut sums);
+        }
+        sums
+    }
+}
+
+/// What silences the modes, over a row of vectors.
+struct Silence<'a> {
+    modes: &'a Modes,
+    means: &'a [Row],
+    dims: usize,
+    cells: &'a mut [Cell],
+    stride: usize,
+}
+
+impl NullaryFnOnce for Silence<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { modes, means, dims, cells, stride } = self;
+        let (mut motions, mut waves) = (vec![[0.0; LANES]; dims], Waves::default());
+        for cell in cells.chunks_exact_mut(stride) {
+            motions.fill([0.0; LANES]);
+            modes.silence(|dim| cell[dim].0, means, &mut waves, &mut motions);
+            for (Cell(values), motion) in cell.iter_mut().zip(&motions) {
+                for lane in 0..LANES {
+                    values[lane] = reflect(values[lane] + motion[lane]);
+                }
+            }
+        }
     }
 }

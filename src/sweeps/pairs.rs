@@ -1,5 +1,6 @@
 //! The gradient of one term at one run of samples: a pass over the pairs that some filter holds together.
 
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::ops::Range;
 
@@ -10,7 +11,7 @@ use crate::objective::plan::PlannedTerm;
 use crate::simd::{LANES, Row};
 use crate::table::extent::{Extent, MOST_DIMS};
 
-/// One lattice term, ready for sweeps.
+/// Lattice terms that see the same dimensions, ready for sweeps.
 #[derive(Clone, Debug)]
 pub(super) struct Pairs {
     pub dims: Vec<usize>,
@@ -22,13 +23,30 @@ pub(super) struct Pairs {
     total: f32,
     /// `Σ_j F_ij / F_ii`: the number of neighbours, each as much as it is held together.
     crowd: f64,
+    /// Added to squared distances.
+    softness: f32,
+    /// On a line, the inverse of the distance that counts in full.
+    steepness: f32,
     field: FieldTable,
 }
 
 impl Pairs {
-    /// Plans the closed form of a lattice term, without pairs below `truncation` of the strongest.
-    pub(super) fn new(term: &PlannedTerm, extent: Extent, truncation: f64) -> Self {
-        let taps = autocorrelation(term.family.taps().unwrap_or_default(), &extent, truncation);
+    /// Plans the closed form of lattice terms that see the same dimensions, each without pairs below
+    /// `truncation` of its strongest.
+    pub(super) fn new(terms: &[&PlannedTerm], extent: Extent, truncation: f64) -> Self {
+        let weights: f64 = terms.iter().map(|term| term.spec.weight).sum();
+        // Every term is meant over pixels by the square of what a filter holds, as in `Objective::cramer`.
+        let mut sums = BTreeMap::new();
+        for term in terms {
+            let of_term = autocorrelation(term.family.taps().unwrap_or_default(), &extent, truncation);
+            let total: f64 = of_term.iter().map(|tap| tap.weight).sum();
+            for tap in of_term {
+                *sums.entry((tap.dt, tap.dy, tap.dx)).or_insert(0.0) +=
+                    term.spec.weight / weights * tap.weight / total;
+            }
+        }
+        let taps: Vec<Tap> =
+            sums.into_iter().map(|((dt, dy, dx), weight)| Tap { dt, dy, dx, weight }).collect();
         let mut spans: Vec<Range<usize>> = Vec::new();
         for (index, tap) in taps.iter().enumerate() {
             match spans.last_mut() {
@@ -40,21 +58,41 @@ impl Pairs {
         }
         let total: f64 = taps.iter().map(|tap| tap.weight).sum();
         Self {
-            dims: term.spec.dims.clone(),
+            dims: terms[0].spec.dims.clone(),
             spp: extent.spp,
             total: (total * extent.spp as f64) as f32,
             crowd: total * extent.spp as f64 / taps.iter().map(|tap| tap.weight).fold(0.0, f64::max),
-            field: FieldTable::new(term.spec.dims.len()),
+            field: FieldTable::new(terms[0].spec.dims.len()),
+            softness: NEAREST,
+            steepness: (RAMP * NEAREST.sqrt()).recip(),
             spans,
             taps,
         }
     }
 
-    /// How far a unit of the pull should move a sample: `n r`, see [`super::Sweeps`].
+    /// How far a unit of the pull should move a sample: `n r`, see [`crate::config::Sweeps`].
     pub(super) fn natural_step(&self) -> f64 {
+        self.crowd * self.room()
+    }
+
+    /// The room around a sample. In one dimension the pull is a sum of signs, flat between one neighbour and
+    /// the next: there it takes the room of several to feel where to go.
+    fn room(&self) -> f64 {
         let dims = self.dims.len() as f64;
         let ball = PI.powf(0.5 * dims) / libm::tgamma(0.5 * dims + 1.0);
-        self.crowd * (ball * self.crowd).powf(-1.0 / dims)
+        let room = (ball * self.crowd).powf(-1.0 / dims);
+        if self.dims.len() == 1 { ROOMS_ON_A_LINE * room } else { room }
+    }
+
+    /// Distances up to about this share of a sample's room count as longer than they are, from now on.
+    pub(super) fn soften(&mut self, share: f64) {
+        self.softness = ((share * self.room()) as f32).powi(2) + NEAREST;
+        self.steepness = (RAMP * self.softness.sqrt()).recip();
+    }
+
+    /// Neighbours that the pull on a sample looks at.
+    pub(super) fn per_sample(&self) -> f64 {
+        (self.taps.len() * self.spp) as f64
     }
 
     /// Offsets of the neighbours, and how strongly some filter holds each.
@@ -76,6 +114,13 @@ impl Pairs {
         }
     }
 
+    /// The unit vector on a line, a sign, as soft as `d / √(d² + softness)` is, without a root.
+    #[inline(always)]
+    fn ramp(&self, away: f32) -> f32 {
+        let at = (self.steepness * away).clamp(-1.0, 1.0);
+        at * (1.5 - 0.5 * at * at)
+    }
+
     /// `MOST` is the number of dimensions where that is known when compiling, so that all sums stay in
     /// registers.
     #[inline(always)]
@@ -89,7 +134,8 @@ impl Pairs {
     ) {
         let mut own = [[0.0; LANES]; MOST];
         let mut sums = [[0.0; LANES]; MOST];
-        let mut total = [if tiles.is_partial() { 0.0 } else { self.total }; LANES];
+        let partial = tiles.is_partial();
+        let mut total = [if partial { 0.0 } else { self.total }; LANES];
         let mut places = [0; MOST];
         places[..dims].copy_from_slice(&self.dims);
         for k in 0..dims {
@@ -102,24 +148,37 @@ impl Pairs {
                 for tap in taps {
                     let weight = tap.weight as f32;
                     let others = &row[tiles.column(run, tap.dx)..][..tiles.planes()];
-                    let mut squares = [NEAREST; LANES];
-                    for k in 0..dims {
-                        let Cell(other) = others[places[k]];
+                    let mut strengths = [0.0; LANES];
+                    if MOST == 1 {
+                        let Cell(other) = others[places[0]];
                         for lane in 0..LANES {
-                            let away = own[k][lane] - other[lane];
-                            squares[lane] += away * away;
+                            strengths[lane] = weight * self.ramp(own[0][lane] - other[lane]);
+                        }
+                    } else {
+                        let mut squares = [self.softness; LANES];
+                        for k in 0..dims {
+                            let Cell(other) = others[places[k]];
+                            for lane in 0..LANES {
+                                let away = own[k][lane] - other[lane];
+                                squares[lane] += away * away;
+                            }
+                        }
+                        for lane in 0..LANES {
+                            strengths[lane] = weight * inverse_root(squares[lane]);
                         }
                     }
-                    let mut strengths = [0.0; LANES];
-                    for lane in 0..LANES {
-                        strengths[lane] = weight * inverse_root(squares[lane]);
-                    }
-                    if tiles.is_partial() {
+                    if partial {
                         let Cell(demanded) = others[tiles.planes() - 1];
                         for lane in 0..LANES {
                             strengths[lane] *= demanded[lane];
                             total[lane] += weight * demanded[lane];
                         }
+                    }
+                    if MOST == 1 {
+                        for lane in 0..LANES {
+                            sums[0][lane] += strengths[lane];
+                        }
+                        continue;
                     }
                     for k in 0..dims {
                         let Cell(other) = others[places[k]];
@@ -140,6 +199,13 @@ impl Pairs {
         }
     }
 }
+
+/// Of a sample on a line, see [`Pairs::room`]: 64×64 with one dimension ends at 0.12 with 1, at 0.06 with 4 (200
+/// sweeps).
+const ROOMS_ON_A_LINE: f64 = 4.0;
+
+/// Length of a ramp, in lengths of a soft root.
+const RAMP: f32 = 2.0;
 
 /// Squared distance that is added to every other, so that a sample is not divided by its distance from
 /// itself.

@@ -13,13 +13,10 @@ use crate::config::{Role, Sweeps};
 use crate::error::ConfigError;
 use crate::kernel::Tap;
 use crate::objective::Objective;
+use crate::objective::plan::PlannedTerm;
 use crate::random::{self, Purpose};
 use crate::simd::{self, LANES, Row};
 use crate::table::domain::Domain;
-
-/// Steps per sweep. The samples of a step move together, as if the others of that step stood still; with few
-/// of them next to each other, large steps are safe.
-pub(crate) const STEPS: usize = 16;
 
 /// A table on its way through sweeps.
 ///
@@ -34,6 +31,10 @@ pub(crate) struct Sweeper {
     tiles: Tiles,
     balance: Balance,
     dims: usize,
+    /// Steps of a sweep.
+    steps: usize,
+    /// The sweep that goes on.
+    sweep: u64,
     /// Runs that hold a demanded sample, in the order of this sweep.
     order: Vec<u32>,
     pulls: Vec<Row>,
@@ -45,6 +46,17 @@ pub(crate) struct Sweeper {
     behind: bool,
 }
 
+/// How the samples of a step move.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Motion {
+    /// In units of their pull.
+    pub rate: f64,
+    /// Distances up to this times the rate, in units of a sample's room, count as longer than they are.
+    pub softening: f64,
+    /// How far of the way a balance moves.
+    pub balance: f64,
+}
+
 impl Sweeper {
     /// Plans the sweeps of an objective.
     ///
@@ -53,19 +65,30 @@ impl Sweeper {
     pub(crate) fn new(objective: &Objective, sweeps: &Sweeps) -> Result<Self, ConfigError> {
         super::check(objective)?;
         let (extent, dims) = (objective.extent, objective.dims);
-        let planned = || objective.terms.iter().filter(|term| term.spec.role == Role::Descend);
-        let terms: Vec<Pairs> = planned().map(|term| Pairs::new(term, extent, sweeps.truncation)).collect();
-        // A coordinate's pull is the mean over the terms that see it, by weight.
-        let mut seen = vec![0.0; dims];
-        for term in planned() {
-            term.spec.dims.iter().for_each(|&dim| seen[dim] += term.spec.weight);
+        // Terms of the same dimensions share a pass over the pairs.
+        let mut groups: Vec<Vec<&PlannedTerm>> = Vec::new();
+        for term in objective.terms.iter().filter(|term| term.spec.role == Role::Descend) {
+            match groups.iter_mut().find(|group| group[0].spec.dims == term.spec.dims) {
+                Some(group) => group.push(term),
+                None => groups.push(vec![term]),
+            }
         }
-        let factors = planned().zip(&terms).map(|(term, pairs)| {
-            let strength = term.spec.weight * pairs.natural_step();
-            term.spec.dims.iter().map(|&dim| (strength / seen[dim]) as f32).collect()
+        let terms: Vec<Pairs> =
+            groups.iter().map(|group| Pairs::new(group, extent, sweeps.truncation)).collect();
+        let weight = |group: &[&PlannedTerm]| group.iter().map(|term| term.spec.weight).sum::<f64>();
+        // A coordinate's pull is the mean over the groups that see it, by weight.
+        let mut seen = vec![0.0; dims];
+        for group in &groups {
+            group[0].spec.dims.iter().for_each(|&dim| seen[dim] += weight(group));
+        }
+        let factors = groups.iter().zip(&terms).map(|(group, pairs)| {
+            let strength = weight(group) * pairs.natural_step();
+            pairs.dims.iter().map(|&dim| (strength / seen[dim]) as f32).collect()
         });
         let factors = factors.collect();
-        let most = COLLECTIVE * STEPS as f64 / terms.iter().map(Pairs::natural_step).fold(1.0, f64::max);
+        let largest = terms.iter().map(Pairs::natural_step).fold(1.0, f64::max);
+        let steps = ((STEPS_PER_UNIT * largest) as usize).next_power_of_two().clamp(FEWEST_STEPS, MOST_STEPS);
+        let most = COLLECTIVE * steps as f64 / largest;
         let taps: Vec<Tap> = terms.iter().flat_map(Pairs::taps).copied().collect();
         let tiles = Tiles::new(extent, dims, &taps, &objective.wanted);
         let is_wanted = |&index: &u32| tiles.run(index as usize).lanes().next().is_some();
@@ -77,6 +100,8 @@ impl Sweeper {
             tiles,
             balance: Balance::new(objective),
             dims,
+            steps,
+            sweep: 0,
             order,
             pulls: Vec::new(),
             most,
@@ -111,24 +136,37 @@ impl Sweeper {
         }
     }
 
+    /// Steps of a sweep.
+    pub(crate) fn steps(&self) -> usize {
+        self.steps
+    }
+
+    /// Pairs of samples that a sweep looks at.
+    pub(crate) fn pairs(&self) -> f64 {
+        let per_sample: f64 = self.terms.iter().map(Pairs::per_sample).sum();
+        per_sample * (self.order.len() * LANES) as f64
+    }
+
     /// Begins a sweep, in an order named by seed and sweep.
     pub(crate) fn shuffle(&mut self, seed: u64, sweep: u64) {
+        self.sweep = sweep;
         self.order.sort_unstable();
         self.order.shuffle(&mut random::generator(seed, Purpose::Sweep, sweep, 0));
         // Within a step the order doesn't matter, and neighbours share rows.
-        for step in 0..STEPS {
-            let part = part(self.order.len(), step);
+        for step in 0..self.steps {
+            let part = part(self.order.len(), self.steps, step);
             self.order[part].sort_unstable();
         }
     }
 
-    /// Moves the samples of one step of the sweep by `rate` times their pull. Returns the pulls' mean square.
-    /// What moves is the copy, until it is stored.
-    pub(crate) fn step(&mut self, step: usize, rate: f64, domains: &[Domain]) -> MeanSquare {
-        let rate = rate.min(self.most);
-        let Self { arch, terms, factors, tiles, dims, order, pulls, ahead, .. } = self;
+    /// Moves the samples of one step of the sweep, and balances the table where a turn of that is due. Returns
+    /// the pulls' mean square. What moves is the copy, until it is stored.
+    pub(crate) fn step(&mut self, step: usize, how: Motion, domains: &[Domain]) -> MeanSquare {
+        let rate = how.rate.min(self.most);
+        self.terms.iter_mut().for_each(|pairs| pairs.soften(how.softening * rate));
+        let Self { arch, terms, factors, tiles, dims, steps, order, pulls, ahead, .. } = self;
         let dims = *dims;
-        let runs = &order[part(order.len(), step)];
+        let runs = &order[part(order.len(), *steps, step)];
         pulls.resize(runs.len() * dims, [0.0; LANES]);
         let tasks = pulls.par_chunks_exact_mut(dims).zip(runs);
         tasks.with_min_len(RUNS_PER_TASK).for_each(|(pulls, &run)| {
@@ -144,19 +182,23 @@ impl Sweeper {
             }
         }
         *ahead = true;
+        let turns = self.balance.turns();
+        if (step + 1).is_multiple_of(self.steps / turns) {
+            let turn = self.sweep * turns as u64 + (step / (self.steps / turns)) as u64;
+            self.balance.advance(self.arch, &mut self.tiles, turn, how.balance);
+        }
         all
     }
 
-    /// Brings the whole table and its frames `share` of the way to where they are uniform.
-    pub(crate) fn balance(&mut self, turn: u64, share: f64) {
-        self.balance.advance(self.arch, &mut self.tiles, turn, share);
-        self.ahead = true;
+    /// Gives coordinates that are balanced one by one the values of a regular grid, by rank.
+    pub(crate) fn settle(&self, points: &mut [f32], samples: &[u32]) {
+        self.balance.settle(points, self.dims, samples);
     }
 
     /// The pulls of a step that was just taken, by coordinate.
     #[cfg(test)]
     pub(super) fn each_pull(&self, step: usize, mut visit: impl FnMut(usize, f32)) {
-        let runs = &self.order[part(self.order.len(), step)];
+        let runs = &self.order[part(self.order.len(), self.steps, step)];
         for (pulls, &run) in self.pulls.chunks_exact(self.dims).zip(runs) {
             let run = self.tiles.run(run as usize);
             for lane in run.lanes() {
@@ -174,8 +216,8 @@ impl Sweeper {
 }
 
 /// The part of a list that a step of the sweep takes.
-fn part(len: usize, step: usize) -> Range<usize> {
-    len * step / STEPS..len * (step + 1) / STEPS
+fn part(len: usize, steps: usize, step: usize) -> Range<usize> {
+    len * step / steps..len * (step + 1) / steps
 }
 
 /// A mean square on its way.
@@ -208,12 +250,18 @@ impl MeanSquare {
     }
 }
 
-/// Largest motion of all neighbours together, in units of what they see, that settles: at one sample per
-/// pixel, from 1.3 on nothing did; at 0.6 tables of many samples are slower.
-const COLLECTIVE: f64 = 1.0;
+/// Steps of a sweep per unit of the natural step. The samples of a step move together, as if the others of
+/// that step stood still; the more they see of each other, the fewer of them should.
+const STEPS_PER_UNIT: f64 = 4.0;
+const FEWEST_STEPS: usize = 16;
+/// With more, threads meet too often.
+const MOST_STEPS: usize = 64;
+
+/// Largest motion of all neighbours together, in units of what they see, that settles.
+const COLLECTIVE: f64 = 0.5;
 
 /// Runs per task: some ten microseconds.
-const RUNS_PER_TASK: usize = 2;
+const RUNS_PER_TASK: usize = 4;
 
 /// The pull on one run, compiled once per instruction set.
 pub(super) struct PullOfRun<'a> {

@@ -103,6 +103,10 @@ fn the_gradient_is_the_slope_of_the_value() {
     }
 }
 
+fn still() -> Motion {
+    Motion { rate: 0.0, softening: 0.0, balance: 0.0 }
+}
+
 /// The pulls of a whole sweep without motion.
 fn pulls(objective: &Objective, points: &[f32]) -> Vec<f32> {
     let sweeps = Sweeps { truncation: 0.0, ..Sweeps::default() };
@@ -110,8 +114,8 @@ fn pulls(objective: &Objective, points: &[f32]) -> Vec<f32> {
     let mut all = vec![0.0; points.len()];
     sweeper.load(points);
     sweeper.shuffle(1, 0);
-    for step in 0..STEPS {
-        sweeper.step(step, 0.0, &objective.domains);
+    for step in 0..sweeper.steps() {
+        sweeper.step(step, still(), &objective.domains);
         sweeper.each_pull(step, |coordinate, pull| all[coordinate] = pull);
     }
     all
@@ -139,7 +143,7 @@ fn sweeps_follow_the_gradient() {
     for dims in 1..=6 {
         let group: Vec<usize> = (0..dims).rev().collect();
         let objective = objective(dims, &[&group]);
-        let natural = Pairs::new(&objective.terms[0], EXTENT, 0.0).natural_step();
+        let natural = Pairs::new(&[&objective.terms[0]], EXTENT, 0.0).natural_step();
         assert_pull_is_gradient(&objective, natural);
     }
 }
@@ -169,7 +173,7 @@ fn any_shape_is_swept() {
         let domains = [Domain::Interval; 2];
         let config = Config::new(extent, 2).with_domains(domains.to_vec()).with_terms(terms);
         let objective = Objective::new(&config).unwrap();
-        assert_pull_is_gradient(&objective, Pairs::new(&objective.terms[0], extent, 0.0).natural_step());
+        assert_pull_is_gradient(&objective, Pairs::new(&[&objective.terms[0]], extent, 0.0).natural_step());
     }
 }
 
@@ -209,8 +213,8 @@ fn a_demand_leaves_out_samples() {
     let mut sweeper = Sweeper::new(&objective, &Sweeps::default()).unwrap();
     sweeper.load(&moved);
     sweeper.shuffle(1, 0);
-    for step in 0..STEPS {
-        sweeper.step(step, 1.0, &domains);
+    for step in 0..sweeper.steps() {
+        sweeper.step(step, Motion { rate: 1.0, ..still() }, &domains);
     }
     sweeper.store(&mut moved);
     for (coordinate, (before, after)) in start.iter().zip(&moved).enumerate() {

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::axis::{Axis, Copies};
 use super::cut::cut;
+use super::reflect;
 use crate::classes::Wanted;
 use crate::kernel::Tap;
 use crate::simd::{LANES, Row};
@@ -23,8 +24,10 @@ pub(super) struct Tiles {
     dims: usize,
     /// Along time, y and x.
     axes: [Axis; 3],
-    /// Vectors by sample, frame, row, column, and coordinate; a last one says what is demanded.
+    /// Vectors by sample, frame, row, column, and coordinate; a last one says what is demanded. None until a
+    /// table is loaded.
     values: Vec<Cell>,
+    wanted: Wanted,
     partial: bool,
     /// Along each axis, where the cells are stored.
     copies: [Vec<Vec<Copies>>; 3],
@@ -59,24 +62,20 @@ impl Tiles {
     pub(super) fn new(extent: Extent, dims: usize, taps: &[Tap], wanted: &Wanted) -> Self {
         let axes = cut(&extent, taps, wanted);
         let (partial, cells) = (wanted.is_partial(), axes.iter().map(Axis::cells).product());
-        let stored: usize = axes.iter().map(Axis::stored).product();
-        let values = vec![Cell([0.0; LANES]); extent.spp * stored * (dims + usize::from(partial))];
         let [_, height, width] = axes.each_ref().map(Axis::tiles);
         let copies = [
             axes[0].copies(|lane| lane / width / height, height * width),
             axes[1].copies(|lane| lane / width % height, width),
             axes[2].copies(|lane| lane % width, 1),
         ];
-        let mut tiles = Self { extent, dims, axes, values, partial, copies, owners: vec![0; cells] };
-        if partial {
-            tiles.fill(dims..dims + 1, |site, _| if wanted.site(site) { &[1.0] } else { &[0.0] });
-        }
+        let (wanted, values) = (wanted.clone(), Vec::new());
+        let mut tiles = Self { extent, dims, axes, values, wanted, partial, copies, owners: vec![0; cells] };
         for index in 0..cells {
             let cell = tiles.run(index).cell;
             let owns = |lane: &usize| {
                 let tile = tiles.tile(*lane);
                 let owned = (0..3).all(|axis| tiles.axes[axis].owns(tile[axis], cell[axis]));
-                owned && wanted.site(extent.site_index(tiles.site(cell, *lane)))
+                owned && tiles.wanted.site(extent.site_index(tiles.site(cell, *lane)))
             };
             tiles.owners[index] = (0..LANES).filter(owns).map(|lane| 1 << lane).sum();
         }
@@ -127,6 +126,7 @@ impl Tiles {
     }
 
     /// Place of a run's sample in one of the tiles, in a list of all samples.
+    #[cfg(test)]
     pub(super) fn sample(&self, run: Run, lane: usize) -> usize {
         self.extent.site_index(self.site(run.cell, lane)) * self.extent.spp + run.sample
     }
@@ -154,6 +154,14 @@ impl Tiles {
     /// Copies a table in.
     pub(super) fn load(&mut self, points: &[f32]) {
         let Self { dims, extent: Extent { spp, .. }, .. } = *self;
+        if self.values.is_empty() {
+            let stored: usize = self.axes.iter().map(Axis::stored).product();
+            self.values = vec![Cell([0.0; LANES]); spp * stored * self.planes()];
+            if self.partial {
+                let wanted = self.wanted.clone();
+                self.fill(dims..dims + 1, |site, _| if wanted.site(site) { &[1.0] } else { &[0.0] });
+            }
+        }
         self.fill(0..dims, |site, sample| &points[(site * spp + sample) * dims..][..dims]);
     }
 
@@ -177,10 +185,6 @@ impl Tiles {
         });
     }
 
-    pub(super) fn dims(&self) -> usize {
-        self.dims
-    }
-
     pub(super) fn frames(&self) -> usize {
         self.extent.frames
     }
@@ -201,30 +205,28 @@ impl Tiles {
         cells.zip(self.owners[first..first + width].iter().copied())
     }
 
-    /// The frame of a row of cells in a lane.
-    pub(super) fn frame_of_row(&self, row: usize, lane: usize) -> usize {
+    /// The frames of a row of cells, by lane.
+    pub(super) fn frames_of_row(&self, row: usize) -> [usize; LANES] {
         let run = self.run(row * self.axes[2].cells());
-        self.axes[0].site(self.tile(lane)[0], self.axes[0].place(run.cell[0], 0))
+        self.frames_at(self.axes[0].place(run.cell[0], 0))
     }
 
-    /// The frames of all lanes, by stored place in time.
+    /// The frames of all lanes, by place in time.
     pub(super) fn frames_by_time(&self) -> Vec<[usize; LANES]> {
-        let frame = |time, lane| self.axes[0].site(self.tile(lane)[0], time);
-        (0..self.axes[0].stored()).map(|time| std::array::from_fn(|lane| frame(time, lane))).collect()
+        (0..self.axes[0].stored()).map(|time| self.frames_at(time)).collect()
     }
 
-    /// Visits all stored rows: place in time, vectors, and how many belong together.
-    pub(super) fn for_each_stored_row(&mut self, visit: impl Fn(usize, &mut [Cell], usize) + Sync) {
-        let stride = self.planes();
+    fn frames_at(&self, time: usize) -> [usize; LANES] {
+        std::array::from_fn(|lane| self.axes[0].site(self.tile(lane)[0], time))
+    }
+
+    /// Visits all rows with their margins: place in time, dimensions, vectors, and how many belong together.
+    /// What moves samples by their values alone moves their copies just so.
+    pub(super) fn for_each_row(&mut self, visit: impl Fn(usize, usize, &mut [Cell], usize) + Sync) {
+        let (dims, stride) = (self.dims, self.planes());
         let [times, ys, xs] = self.axes.each_ref().map(Axis::stored);
-        let rows = self.values.par_chunks_exact_mut(xs * stride).enumerate().with_min_len(4);
-        rows.for_each(|(row, cells)| visit(row / ys % times, cells, stride));
-    }
-
-    pub(super) fn for_each_stored(&mut self, visit: impl Fn(usize, &mut [Cell]) + Sync) {
-        self.for_each_stored_row(|time, cells, stride| {
-            cells.chunks_exact_mut(stride).for_each(|cell| visit(time, cell));
-        });
+        let rows = self.values.par_chunks_exact_mut(xs * stride).enumerate().with_min_len(ROWS_PER_TASK);
+        rows.for_each(|(row, cells)| visit(row / ys % times, dims, cells, stride));
     }
 
     /// Copies the demanded samples out.
@@ -264,7 +266,10 @@ impl Tiles {
         let own = self.place(run.sample, run) + dim;
         let mut moved = self.values[own].0;
         for lane in run.lanes() {
-            moved[lane] = match domain { Domain::Interval => super::reflect(moved[lane] + motion[lane]), Domain::Torus => domain.admit(moved[lane] + motion[lane]) };
+            moved[lane] = match domain {
+                Domain::Interval => reflect(moved[lane] + motion[lane]),
+                Domain::Torus => domain.admit(moved[lane] + motion[lane]),
+            };
         }
         let [times, ys, xs] = std::array::from_fn(|k| self.copies[k][run.cell[k]].as_slice());
         let stride = self.planes();
@@ -273,10 +278,10 @@ impl Tiles {
                 let row = self.row_at(run.sample, time.place, y.place) + dim;
                 for x in xs {
                     let Cell(copy) = &mut self.values[row + x.place * stride];
-                    for lane in 0..LANES {
+                    for (lane, copy) in copy.iter_mut().enumerate() {
                         let from = usize::from(time.of[lane] + y.of[lane] + x.of[lane]);
                         if from < LANES {
-                            copy[lane] = moved[from];
+                            *copy = moved[from];
                         }
                     }
                 }
@@ -286,4 +291,4 @@ impl Tiles {
 }
 
 /// Rows that are worth handing to a thread.
-const ROWS_PER_TASK: usize = 16;
+const ROWS_PER_TASK: usize = 8;
