@@ -44,7 +44,7 @@ fn the_peak_of_a_run_is_a_small_multiple_of_the_table() {
         let peak = one_thread().install(|| {
             measure(|| {
                 let mut optimizer = Optimizer::new(Config::new(extent, 2)).unwrap();
-                let work = Until::Work(Work { slices_per_class, sweeps });
+                let work = Until::Work(Work { slices_per_class, sweeps, ..Work::default() });
                 optimizer.run(work).unwrap();
             })
             .bytes_max

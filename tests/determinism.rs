@@ -85,10 +85,13 @@ fn threads_do_not_change_a_bit() {
                 let mut optimizer = optimizer(&config);
                 let mut displacements = Vec::new();
                 let report = optimizer
-                    .run_observed(Until::Work(Work { slices_per_class: 10, sweeps: 2 }), |step| {
-                        displacements.push(step.displacement.to_bits());
-                        ControlFlow::Continue(())
-                    })
+                    .run_observed(
+                        Until::Work(Work { slices_per_class: 10, sweeps: 2, ..Work::default() }),
+                        |step| {
+                            displacements.push(step.displacement.to_bits());
+                            ControlFlow::Continue(())
+                        },
+                    )
                     .unwrap();
                 let bound =
                     metrics::Bound::measure(&optimizer.table(), optimizer.objective(), 9, 512).unwrap();

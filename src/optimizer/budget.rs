@@ -3,10 +3,15 @@
 use std::time::{Duration, Instant};
 
 use super::Optimizer;
-use crate::config::{Until, Work};
+use crate::config::{Role, Until, Work};
 use crate::error::{ConfigError, RangeError};
 use crate::sweeps::{self, Motion};
 
+/// Pairs of samples that usual sweeps look at: about a second of a core.
+const USUAL_PAIRS: f64 = 4.3e9;
+const FEWEST_SWEEPS: f64 = 3.0;
+/// Slices per class that usually are enough for what has no closed form.
+const USUAL_SLICES: u64 = 320;
 /// Share of the time of an animation that its first frame gets: the frame's quality is what single frames
 /// keep.
 const FRAME_SHARE: f64 = 0.2;
@@ -20,9 +25,11 @@ impl Optimizer {
         let work = match until {
             Until::SlicesPerClass(slices_per_class) => slices(slices_per_class),
             Until::Epochs(epochs) => slices(epochs.saturating_mul(self.config.slicing.directions as u64)),
-            Until::Sweeps(sweeps) => {
-                Work { frame_sweeps: self.frame_sweeps(sweeps)?, sweeps, ..Work::default() }
-            }
+            Until::Usual => match self.usual_sweeps() {
+                Some(sweeps) => self.with_frame(sweeps)?,
+                None => slices(USUAL_SLICES),
+            },
+            Until::Sweeps(sweeps) => self.with_frame(sweeps)?,
             Until::Work(work) => work,
             Until::Converged { improvement, window_steps, at_most } => {
                 let is_share = (0.0..1.0).contains(&improvement);
@@ -42,14 +49,25 @@ impl Optimizer {
         Ok(work)
     }
 
-    /// Sweeps of a frame that take about as long as their share beside those of the animation.
-    fn frame_sweeps(&mut self, sweeps: u64) -> Result<u64, ConfigError> {
+    /// Sweeps that are usually worth it; `None` without a closed form.
+    fn usual_sweeps(&mut self) -> Option<u64> {
+        let pairs = self.sweeper().ok()?.pairs();
+        let terms = &self.objective.terms;
+        let descended = || terms.iter().filter(|term| term.spec.role == Role::Descend);
+        let most = if descended().all(|term| term.spec.dims.len() == 1) { 10_000.0 } else { 1_000.0 };
+        Some((USUAL_PAIRS / pairs).clamp(FEWEST_SWEEPS, most) as u64)
+    }
+
+    /// So many sweeps, and as many of a frame as take their share of the time.
+    fn with_frame(&mut self, sweeps: u64) -> Result<Work, ConfigError> {
         sweeps::check(&self.objective)?;
+        let work = Work { sweeps, ..Work::default() };
         let frame = if self.fresh { self.of_a_frame()? } else { None };
-        let Some(mut frame) = frame else { return Ok(0) };
+        let Some(mut frame) = frame else { return Ok(work) };
         let cost = self.sweeper()?.pairs() / frame.sweeper()?.pairs();
         let share = FRAME_SHARE / (1.0 - FRAME_SHARE);
-        Ok((sweeps as f64 * cost * share).ceil().min(MOST_FRAME_SWEEPS) as u64)
+        let frame_sweeps = (sweeps as f64 * cost * share).ceil().min(MOST_FRAME_SWEEPS) as u64;
+        Ok(Work { frame_sweeps, ..work })
     }
 
     /// The work that fits into a time.

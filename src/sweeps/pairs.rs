@@ -16,9 +16,11 @@ use crate::table::extent::{Extent, MOST_DIMS};
 pub(super) struct Pairs {
     pub dims: Vec<usize>,
     spp: usize,
-    taps: Vec<Tap>,
-    /// Taps of one row of neighbours each.
-    spans: Vec<Range<usize>>,
+    /// By offset in time, then in y.
+    spans: Vec<Span>,
+    /// Spans of the same offset in time.
+    frames: Vec<Range<usize>>,
+    taps: Vec<RowTap>,
     /// `Σ_j F_ij`, the same for every sample of a table that is demanded whole.
     total: f32,
     /// `Σ_j F_ij / F_ii`: the number of neighbours, each as much as it is held together.
@@ -28,6 +30,30 @@ pub(super) struct Pairs {
     /// On a line, the inverse of the distance that counts in full.
     steepness: f32,
     field: FieldTable,
+}
+
+/// The taps of one row of neighbours.
+#[derive(Clone, Debug)]
+struct Span {
+    dt: i32,
+    dy: i32,
+    taps: Range<usize>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct RowTap {
+    dx: i32,
+    weight: f32,
+}
+
+/// What the samples of a run have seen of others.
+#[derive(Clone, Copy)]
+struct Seen<const MOST: usize> {
+    own: [Row; MOST],
+    /// Unit vectors away from others, by weight.
+    sums: [Row; MOST],
+    /// Weights, where not all samples count.
+    total: Row,
 }
 
 impl Pairs {
@@ -45,27 +71,31 @@ impl Pairs {
                     term.spec.weight / weights * tap.weight / total;
             }
         }
-        let taps: Vec<Tap> =
-            sums.into_iter().map(|((dt, dy, dx), weight)| Tap { dt, dy, dx, weight }).collect();
-        let mut spans: Vec<Range<usize>> = Vec::new();
-        for (index, tap) in taps.iter().enumerate() {
-            match spans.last_mut() {
-                Some(span) if (taps[span.start].dt, taps[span.start].dy) == (tap.dt, tap.dy) => {
-                    span.end = index + 1;
+        let (mut spans, mut frames, mut taps) = (Vec::<Span>::new(), Vec::<Range<usize>>::new(), Vec::new());
+        for (&(dt, dy, dx), &weight) in &sums {
+            let is_new = |last: &Span| (last.dt, last.dy) != (dt, dy);
+            if spans.last().is_none_or(is_new) {
+                if spans.last().is_none_or(|last| last.dt != dt) {
+                    frames.push(spans.len()..spans.len());
                 }
-                _ => spans.push(index..index + 1),
+                spans.push(Span { dt, dy, taps: taps.len()..taps.len() });
+                frames.last_mut().expect("one was pushed").end += 1;
             }
+            taps.push(RowTap { dx, weight: weight as f32 });
+            spans.last_mut().expect("one was pushed").taps.end += 1;
         }
-        let total: f64 = taps.iter().map(|tap| tap.weight).sum();
+        let total = sums.values().sum::<f64>() * extent.spp as f64;
+        let dims = terms[0].spec.dims.clone();
         Self {
-            dims: terms[0].spec.dims.clone(),
             spp: extent.spp,
-            total: (total * extent.spp as f64) as f32,
-            crowd: total * extent.spp as f64 / taps.iter().map(|tap| tap.weight).fold(0.0, f64::max),
-            field: FieldTable::new(terms[0].spec.dims.len()),
+            total: total as f32,
+            crowd: total / sums.values().copied().fold(0.0, f64::max),
             softness: NEAREST,
             steepness: (RAMP * NEAREST.sqrt()).recip(),
+            field: FieldTable::new(dims.len()),
+            dims,
             spans,
+            frames,
             taps,
         }
     }
@@ -95,30 +125,27 @@ impl Pairs {
         (self.taps.len() * self.spp) as f64
     }
 
-    /// Offsets of the neighbours, and how strongly some filter holds each.
-    pub(super) fn taps(&self) -> &[Tap] {
-        &self.taps
+    /// Offsets of the neighbours, and how strongly filters hold each.
+    pub(super) fn taps(&self) -> impl Iterator<Item = Tap> {
+        self.spans.iter().flat_map(|&Span { dt, dy, ref taps }| {
+            let of_row = self.taps[taps.clone()].iter();
+            of_row.map(move |&RowTap { dx, weight }| Tap { dt, dy, dx, weight: weight.into() })
+        })
     }
 
-    /// Adds `factor` times the pull on the samples of a run, one row of lanes per dimension of the table: the
-    /// mean unit vector away from their neighbours, less that away from a uniform point.
+    /// Adds `factor` times the pull on the samples of some runs, at most [`BLOCK`], to `pulls`, for each run a
+    /// row of lanes per dimension of the table: the mean unit vector away from their neighbours, less that
+    /// away from a uniform point.
     #[inline(always)]
-    pub(super) fn add_pull(&self, tiles: &Tiles, run: Run, factors: &[f32], pulls: &mut [Row]) {
+    pub(super) fn add_pulls(&self, tiles: &Tiles, runs: &[Run], factors: &[f32], pulls: &mut [Row]) {
         match self.dims.len() {
-            1 => self.add::<1>(1, tiles, run, factors, pulls),
-            2 => self.add::<2>(2, tiles, run, factors, pulls),
-            3 => self.add::<3>(3, tiles, run, factors, pulls),
-            4 => self.add::<4>(4, tiles, run, factors, pulls),
-            dims @ 5..=8 => self.add::<8>(dims, tiles, run, factors, pulls),
-            dims => self.add::<MOST_DIMS>(dims, tiles, run, factors, pulls),
+            1 => self.add::<1>(1, tiles, runs, factors, pulls),
+            2 => self.add::<2>(2, tiles, runs, factors, pulls),
+            3 => self.add::<3>(3, tiles, runs, factors, pulls),
+            4 => self.add::<4>(4, tiles, runs, factors, pulls),
+            dims @ 5..=8 => self.add::<8>(dims, tiles, runs, factors, pulls),
+            dims => self.add::<MOST_DIMS>(dims, tiles, runs, factors, pulls),
         }
-    }
-
-    /// The unit vector on a line, a sign, as soft as `d / √(d² + softness)` is, without a root.
-    #[inline(always)]
-    fn ramp(&self, away: f32) -> f32 {
-        let at = (self.steepness * away).clamp(-1.0, 1.0);
-        at * (1.5 - 0.5 * at * at)
     }
 
     /// `MOST` is the number of dimensions where that is known when compiling, so that all sums stay in
@@ -128,77 +155,112 @@ impl Pairs {
         &self,
         dims: usize,
         tiles: &Tiles,
-        run: Run,
+        runs: &[Run],
         factors: &[f32],
         pulls: &mut [Row],
     ) {
-        let mut own = [[0.0; LANES]; MOST];
-        let mut sums = [[0.0; LANES]; MOST];
-        let partial = tiles.is_partial();
-        let mut total = [if partial { 0.0 } else { self.total }; LANES];
+        let zero = [[0.0; LANES]; MOST];
+        let total = [if tiles.is_partial() { 0.0 } else { self.total }; LANES];
+        let mut seen = [Seen { own: zero, sums: zero, total }; BLOCK];
+        let seen = &mut seen[..runs.len()];
+        for (seen, &run) in seen.iter_mut().zip(runs) {
+            let cell = &tiles.row(run.sample, run, [0; 2])[tiles.column(run, 0)..];
+            seen.own.iter_mut().zip(&self.dims).for_each(|(own, &dim)| *own = cell[dim].0);
+        }
+        // One frame of one sample after the other: what the runs of a block see of it stays in the cache.
+        for sample in 0..self.spp {
+            for frame in &self.frames {
+                for (seen, &run) in seen.iter_mut().zip(runs) {
+                    self.see(dims, tiles, run, sample, frame, seen);
+                }
+            }
+        }
+        let per_run = pulls.len() / runs.len();
+        for (Seen { own, sums, total }, pulls) in seen.iter().zip(pulls.chunks_exact_mut(per_run)) {
+            let mut field = zero;
+            self.field.gradient(&own[..dims], &mut field[..dims]);
+            for k in 0..dims {
+                let (pull, factor) = (&mut pulls[self.dims[k]], factors[k]);
+                for lane in 0..LANES {
+                    pull[lane] +=
+                        factor * (sums[k][lane] / total[lane].max(f32::MIN_POSITIVE) - field[k][lane]);
+                }
+            }
+        }
+    }
+
+    /// Adds what a run sees of one of the samples of its neighbours in some frame.
+    #[inline(always)]
+    fn see<const MOST: usize>(
+        &self,
+        dims: usize,
+        tiles: &Tiles,
+        run: Run,
+        sample: usize,
+        frame: &Range<usize>,
+        seen: &mut Seen<MOST>,
+    ) {
+        let Seen { own, mut sums, mut total } = *seen;
+        let (partial, planes) = (tiles.is_partial(), tiles.planes());
         let mut places = [0; MOST];
         places[..dims].copy_from_slice(&self.dims);
-        for k in 0..dims {
-            own[k] = tiles.row(run.sample, run, [0; 2])[tiles.column(run, 0) + places[k]].0;
-        }
-        for span in &self.spans {
-            let taps = &self.taps[span.clone()];
-            for sample in 0..self.spp {
-                let row = tiles.row(sample, run, [taps[0].dt, taps[0].dy]);
-                for tap in taps {
-                    let weight = tap.weight as f32;
-                    let others = &row[tiles.column(run, tap.dx)..][..tiles.planes()];
-                    let mut strengths = [0.0; LANES];
-                    if MOST == 1 {
-                        let Cell(other) = others[places[0]];
-                        for lane in 0..LANES {
-                            strengths[lane] = weight * self.ramp(own[0][lane] - other[lane]);
-                        }
-                    } else {
-                        let mut squares = [self.softness; LANES];
-                        for k in 0..dims {
-                            let Cell(other) = others[places[k]];
-                            for lane in 0..LANES {
-                                let away = own[k][lane] - other[lane];
-                                squares[lane] += away * away;
-                            }
-                        }
-                        for lane in 0..LANES {
-                            strengths[lane] = weight * inverse_root(squares[lane]);
-                        }
+        for span in &self.spans[frame.clone()] {
+            let row = tiles.row(sample, run, [span.dt, span.dy]);
+            for &RowTap { dx, weight } in &self.taps[span.taps.clone()] {
+                let others = &row[tiles.column(run, dx)..][..planes];
+                let mut strengths = [0.0; LANES];
+                if MOST == 1 {
+                    let Cell(other) = others[places[0]];
+                    for lane in 0..LANES {
+                        strengths[lane] = weight * self.ramp(own[0][lane] - other[lane]);
                     }
-                    if partial {
-                        let Cell(demanded) = others[tiles.planes() - 1];
-                        for lane in 0..LANES {
-                            strengths[lane] *= demanded[lane];
-                            total[lane] += weight * demanded[lane];
-                        }
-                    }
-                    if MOST == 1 {
-                        for lane in 0..LANES {
-                            sums[0][lane] += strengths[lane];
-                        }
-                        continue;
-                    }
+                } else {
+                    let mut squares = [self.softness; LANES];
                     for k in 0..dims {
                         let Cell(other) = others[places[k]];
                         for lane in 0..LANES {
-                            sums[k][lane] += strengths[lane] * (own[k][lane] - other[lane]);
+                            let away = own[k][lane] - other[lane];
+                            squares[lane] += away * away;
                         }
+                    }
+                    for lane in 0..LANES {
+                        strengths[lane] = weight * inverse_root(squares[lane]);
+                    }
+                }
+                if partial {
+                    let Cell(demanded) = others[planes - 1];
+                    for lane in 0..LANES {
+                        strengths[lane] *= demanded[lane];
+                        total[lane] += weight * demanded[lane];
+                    }
+                }
+                if MOST == 1 {
+                    for lane in 0..LANES {
+                        sums[0][lane] += strengths[lane];
+                    }
+                    continue;
+                }
+                for k in 0..dims {
+                    let Cell(other) = others[places[k]];
+                    for lane in 0..LANES {
+                        sums[k][lane] += strengths[lane] * (own[k][lane] - other[lane]);
                     }
                 }
             }
         }
-        let mut field = [[0.0; LANES]; MOST];
-        self.field.gradient(&own[..dims], &mut field[..dims]);
-        for k in 0..dims {
-            let (pull, factor) = (&mut pulls[self.dims[k]], factors[k]);
-            for lane in 0..LANES {
-                pull[lane] += factor * (sums[k][lane] / total[lane].max(f32::MIN_POSITIVE) - field[k][lane]);
-            }
-        }
+        (seen.sums, seen.total) = (sums, total);
+    }
+
+    /// The unit vector on a line, a sign, as soft as `d / √(d² + softness)` is, without a root.
+    #[inline(always)]
+    fn ramp(&self, away: f32) -> f32 {
+        let at = (self.steepness * away).clamp(-1.0, 1.0);
+        at * (1.5 - 0.5 * at * at)
     }
 }
+
+/// Runs whose pulls are computed together.
+pub(super) const BLOCK: usize = 8;
 
 /// Of a sample on a line, see [`Pairs::room`]: 64×64 with one dimension ends at 0.12 with 1, at 0.06 with 4 (200
 /// sweeps).

@@ -7,7 +7,7 @@ use rand::seq::SliceRandom;
 use rayon::prelude::*;
 
 use super::balance::Balance;
-use super::pairs::Pairs;
+use super::pairs::{BLOCK, Pairs};
 use super::tiles::{Run, Tiles};
 use crate::config::{Role, Sweeps};
 use crate::error::ConfigError;
@@ -89,7 +89,7 @@ impl Sweeper {
         let largest = terms.iter().map(Pairs::natural_step).fold(1.0, f64::max);
         let steps = ((STEPS_PER_UNIT * largest) as usize).next_power_of_two().clamp(FEWEST_STEPS, MOST_STEPS);
         let most = COLLECTIVE * steps as f64 / largest;
-        let taps: Vec<Tap> = terms.iter().flat_map(Pairs::taps).copied().collect();
+        let taps: Vec<Tap> = terms.iter().flat_map(Pairs::taps).collect();
         let tiles = Tiles::new(extent, dims, &taps, &objective.wanted);
         let is_wanted = |&index: &u32| tiles.run(index as usize).lanes().next().is_some();
         let order = (0..tiles.runs() as u32).filter(is_wanted).collect();
@@ -168,11 +168,10 @@ impl Sweeper {
         let dims = *dims;
         let runs = &order[part(order.len(), *steps, step)];
         pulls.resize(runs.len() * dims, [0.0; LANES]);
-        let tasks = pulls.par_chunks_exact_mut(dims).zip(runs);
-        tasks.with_min_len(RUNS_PER_TASK).for_each(|(pulls, &run)| {
-            let run = tiles.run(run as usize);
-            arch.dispatch(PullOfRun { terms, factors, tiles, run, pulls });
-        });
+        // Blocks share what they read, and threads the blocks.
+        let block = (runs.len() / FEWEST_BLOCKS).clamp(1, BLOCK);
+        let tasks = pulls.par_chunks_mut(block * dims).zip(runs.par_chunks(block));
+        tasks.for_each(|(pulls, runs)| arch.dispatch(PullsOfRuns { terms, factors, tiles, runs, pulls }));
         let mut all = MeanSquare::default();
         for (pulls, &run) in pulls.chunks_exact(dims).zip(runs) {
             let run = tiles.run(run as usize);
@@ -209,9 +208,9 @@ impl Sweeper {
     }
 
     #[cfg(test)]
-    pub(super) fn pull_of_run<'a>(&'a self, run: usize, pulls: &'a mut [Row]) -> PullOfRun<'a> {
+    pub(super) fn pulls_of_runs<'a>(&'a self, runs: &'a [u32], pulls: &'a mut [Row]) -> PullsOfRuns<'a> {
         let Self { terms, factors, tiles, .. } = self;
-        PullOfRun { terms, factors, tiles, run: tiles.run(run), pulls }
+        PullsOfRuns { terms, factors, tiles, runs, pulls }
     }
 }
 
@@ -260,27 +259,29 @@ const MOST_STEPS: usize = 64;
 /// Largest motion of all neighbours together, in units of what they see, that settles.
 const COLLECTIVE: f64 = 0.5;
 
-/// Runs per task: some ten microseconds.
-const RUNS_PER_TASK: usize = 4;
+/// Blocks of a step, at least: enough for some threads.
+const FEWEST_BLOCKS: usize = 4;
 
-/// The pull on one run, compiled once per instruction set.
-pub(super) struct PullOfRun<'a> {
+/// The pulls on a block of runs, compiled once per instruction set.
+pub(super) struct PullsOfRuns<'a> {
     terms: &'a [Pairs],
     factors: &'a [Vec<f32>],
     tiles: &'a Tiles,
-    run: Run,
+    runs: &'a [u32],
     pulls: &'a mut [Row],
 }
 
-impl NullaryFnOnce for PullOfRun<'_> {
+impl NullaryFnOnce for PullsOfRuns<'_> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        let Self { terms, factors, tiles, run, pulls } = self;
+        let Self { terms, factors, tiles, runs, pulls } = self;
         pulls.fill([0.0; LANES]);
+        let mut block = [tiles.run(0); BLOCK];
+        block.iter_mut().zip(runs).for_each(|(run, &index)| *run = tiles.run(index as usize));
         for (pairs, factors) in terms.iter().zip(factors) {
-            pairs.add_pull(tiles, run, factors, pulls);
+            pairs.add_pulls(tiles, &block[..runs.len()], factors, pulls);
         }
     }
 }

@@ -71,7 +71,7 @@ impl Tiles {
         let (wanted, values) = (wanted.clone(), Vec::new());
         let mut tiles = Self { extent, dims, axes, values, wanted, partial, copies, owners: vec![0; cells] };
         for index in 0..cells {
-            let cell = tiles.run(index).cell;
+            let cell = tiles.run(index * extent.spp).cell;
             let owns = |lane: &usize| {
                 let tile = tiles.tile(*lane);
                 let owned = (0..3).all(|axis| tiles.axes[axis].owns(tile[axis], cell[axis]));
@@ -97,9 +97,10 @@ impl Tiles {
         self.extent.spp * self.owners.len()
     }
 
+    /// Runs that follow each other lie next to each other.
     pub(super) fn run(&self, index: usize) -> Run {
         let [_, height, width] = self.axes.each_ref().map(Axis::cells);
-        let (sample, cell) = (index / self.owners.len(), index % self.owners.len());
+        let (cell, sample) = (index / self.extent.spp, index % self.extent.spp);
         let row = cell / width;
         self.run_at(sample, [row / height, row % height, cell % width])
     }
@@ -189,26 +190,29 @@ impl Tiles {
         self.extent.frames
     }
 
-    /// Rows of cells.
+    /// Rows of cells, of all samples.
     pub(super) fn cell_rows(&self) -> Range<usize> {
         0..self.runs() / self.axes[2].cells()
+    }
+
+    /// The first cell of a row.
+    fn row_start(&self, row: usize) -> Run {
+        let [times, height, _] = self.axes.each_ref().map(Axis::cells);
+        self.run_at(row / height / times, [row / height % times, row % height, 0])
     }
 
     /// Cells of a row, and their owners.
     #[inline(always)]
     pub(super) fn cells_of(&self, row: usize) -> impl Iterator<Item = (&[Cell], u16)> {
-        let width = self.axes[2].cells();
-        let run = self.run(row * width);
-        let begin = self.place(run.sample, run);
-        let cells = self.values[begin..].chunks_exact(self.planes());
+        let (width, run) = (self.axes[2].cells(), self.row_start(row));
+        let cells = self.values[self.place(run.sample, run)..].chunks_exact(self.planes());
         let first = (row * width) % self.owners.len();
         cells.zip(self.owners[first..first + width].iter().copied())
     }
 
     /// The frames of a row of cells, by lane.
     pub(super) fn frames_of_row(&self, row: usize) -> [usize; LANES] {
-        let run = self.run(row * self.axes[2].cells());
-        self.frames_at(self.axes[0].place(run.cell[0], 0))
+        self.frames_at(self.axes[0].place(self.row_start(row).cell[0], 0))
     }
 
     /// The frames of all lanes, by place in time.

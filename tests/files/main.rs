@@ -88,7 +88,14 @@ fn metadata(table: &SampleTable) -> Metadata {
             ],
         }],
         bound: Some(BoundRecord { before: estimate, after: estimate }),
-        run: RunRecord { slices_per_class: 64, sweeps: 3, ended_early: true, steps: 4096, seconds: 12.75 },
+        run: RunRecord {
+            frame_sweeps: 2,
+            slices_per_class: 64,
+            sweeps: 3,
+            ended_early: true,
+            steps: 4096,
+            seconds: 12.75,
+        },
         ..Metadata::new(table.extent(), table.dims(), u64::MAX - 1, configuration)
     }
 }

@@ -30,14 +30,19 @@ fn reaches(shape: [usize; 4], dims: usize, work: Work, [most_filtered, most_boun
 }
 
 fn sweeps(sweeps: u64) -> Work {
-    Work { slices_per_class: 0, sweeps }
+    Work { slices_per_class: 0, sweeps, ..Work::default() }
 }
 
 /// The published code needs 4096 × 2048 slices (2000 per class) for 0.248 and 0.651, at a bias of 6.
 #[test]
 fn static_tables() {
     reaches([1, 64, 64, 1], 2, sweeps(20), [0.22, 0.66, 0.4]);
-    reaches([1, 64, 64, 1], 2, Work { slices_per_class: 160, sweeps: 60 }, [0.21, 0.64, 0.4]);
+    reaches(
+        [1, 64, 64, 1],
+        2,
+        Work { slices_per_class: 160, sweeps: 60, ..Work::default() },
+        [0.21, 0.64, 0.4],
+    );
 }
 
 #[test]
@@ -52,7 +57,12 @@ fn other_shapes() {
     reaches([1, 48, 48, 1], 1, sweeps(40), [0.25, 0.66, 0.6]);
     reaches([1, 40, 40, 1], 4, sweeps(30), [0.27, 0.70, 0.9]);
     // Thousands of neighbours move together; without a limit on the step this ends at 1.9 and 1.4.
-    reaches([1, 16, 16, 16], 4, Work { slices_per_class: 40, sweeps: 6 }, [0.12, 0.56, 0.4]);
+    reaches(
+        [1, 16, 16, 16],
+        4,
+        Work { slices_per_class: 40, sweeps: 6, ..Work::default() },
+        [0.12, 0.56, 0.4],
+    );
     reaches([3, 20, 40, 1], 3, sweeps(20), [0.40, 0.74, 1.0]);
 }
 
@@ -78,7 +88,9 @@ fn a_torus_is_refused_before_anything_moves() {
     config.domains[1] = Domain::Torus;
     let mut optimizer = Optimizer::new(config).unwrap();
     let before = optimizer.table();
-    let error = optimizer.run_observed(Until::Work(Work { slices_per_class: 8, sweeps: 1 }), on).unwrap_err();
+    let error = optimizer
+        .run_observed(Until::Work(Work { slices_per_class: 8, sweeps: 1, ..Work::default() }), on)
+        .unwrap_err();
     assert!(matches!(error, ConfigError::NotInClosedForm { term: 0, .. }), "{error}");
     assert!(optimizer.sweep(1.0, 1.0).is_err());
     assert_eq!(optimizer.table(), before);

@@ -57,9 +57,10 @@ pub fn metadata(out: &mut dyn Write, beside: Option<&Result<Metadata, TableError
         Some(Ok(metadata)) => {
             writeln!(
                 out,
-                "metadata: fsot {}, seed {}, {} slices per pixel and {} sweeps in {} steps, {:.2} s",
+                "metadata: fsot {}, seed {}, {} sweeps of a frame, {} slices per pixel and {} sweeps in {} steps, {:.2} s",
                 metadata.crate_version,
                 metadata.seed,
+                metadata.run.frame_sweeps,
                 metadata.run.slices_per_class,
                 metadata.run.sweeps,
                 metadata.run.steps,

@@ -60,14 +60,18 @@ pub struct Arguments {
     /// How slices move the samples [default: barycentric].
     #[arg(long, value_enum)]
     optimizer: Option<DescentName>,
-    /// Slices drawn per pixel and frame [default: 320 with --domain torus or --optimizer; otherwise 128 if
-    /// there are several samples per pixel, else 0].
+    /// Slices drawn per pixel and frame [default: 320 with --domain torus or --optimizer, else 0].
     #[arg(long, conflicts_with = "seconds")]
     slices_per_class: Option<u64>,
-    /// Sweeps over all samples, after the slices; not with --domain torus [default: 100 for one sample per
-    /// pixel, 64 for several; 0 with --slices-per-class above 0, --domain torus or --optimizer].
+    /// Sweeps over all samples, after the slices; not with --domain torus [default: about a second's work of a
+    /// core, from 3 to 1000, or to 10000 for scalars; 0 with --slices-per-class above 0, --domain torus or
+    /// --optimizer].
     #[arg(long, conflicts_with = "seconds")]
     sweeps: Option<u64>,
+    /// Sweeps of the frame that an animation begins with [default: as many as take a fifth of the time; 0
+    /// with --slices-per-class].
+    #[arg(long, conflicts_with = "seconds")]
+    frame_sweeps: Option<u64>,
     /// Time for the optimisation alone, instead of an amount of work.
     #[arg(long)]
     seconds: Option<f64>,
@@ -107,16 +111,16 @@ impl Arguments {
             return Until::Seconds(seconds);
         }
         let slices_only = self.optimizer.is_some() || matches!(self.domain, DomainName::Torus);
-        // With several samples per pixel, sweeps alone leave those of a pixel unlike what their slices want.
-        let (slices, sweeps) = match self.spp {
-            _ if slices_only => (320, 0),
-            1 => (0, 100),
-            _ => (128, 64),
-        };
-        let slices_per_class = self.slices_per_class.unwrap_or(slices);
-        let alone = self.slices_per_class.is_some_and(|slices| slices > 0);
-        let sweeps = self.sweeps.unwrap_or(if alone { 0 } else { sweeps });
-        Until::Work(Work { slices_per_class, sweeps })
+        let slices = if slices_only { Some(320) } else { None };
+        match (self.slices_per_class.or(slices), self.sweeps, self.frame_sweeps) {
+            (None, None, None) => Until::Usual,
+            (None, Some(sweeps), None) => Until::Sweeps(sweeps),
+            (slices, sweeps, frame_sweeps) => Until::Work(Work {
+                frame_sweeps: frame_sweeps.unwrap_or(0),
+                slices_per_class: slices.unwrap_or(0),
+                sweeps: sweeps.unwrap_or(0),
+            }),
+        }
     }
 
     /// What is optimised.

@@ -164,7 +164,7 @@ fn ours(config: Config, tile: usize, effort: f64) -> Result<SampleTable, Failure
     let slices_per_class = (slices * effort * room / spp as f64).ceil() as u64;
     let sweeps = (sweeps * effort * room / (spp * spp) as f64).ceil() as u64;
     let mut optimizer = Optimizer::new(config)?;
-    optimizer.run(Until::Work(Work { slices_per_class, sweeps }))?;
+    optimizer.run(Until::Work(Work { slices_per_class, sweeps, ..Work::default() }))?;
     Ok(optimizer.into_table())
 }
 

@@ -43,6 +43,6 @@ fn slices(descent: Descent, config: &Config, effort: Effort) -> Result<Made, Con
 
 fn work(config: &Config, slices_per_class: u64, sweeps: u64) -> Result<Made, ConfigError> {
     let mut optimizer = Optimizer::new(config.clone())?;
-    let report = optimizer.run(Until::Work(Work { slices_per_class, sweeps }))?;
+    let report = optimizer.run(Until::Work(Work { slices_per_class, sweeps, ..Work::default() }))?;
     Ok(Made { table: optimizer.into_table(), seconds: report.elapsed.as_secs_f64(), slices: report.slices })
 }
