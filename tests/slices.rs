@@ -13,7 +13,7 @@ const EXTENT: Extent = Extent { frames: 4, height: 16, width: 24, spp: 1 };
 const STEPS: u64 = 20;
 
 fn objective() -> Objective {
-    Objective::new(&Config::new(EXTENT, 2)).unwrap()
+    Objective::new(&Config::new(EXTENT, 2).with_companions(false)).unwrap()
 }
 
 fn draws(role: Role, steps: u64) -> Vec<Slice> {

@@ -105,9 +105,11 @@ impl DimensionGroup {
     }
 }
 
-/// Share of the work that goes to the whole table, to its frames, and to single coordinates, relative to the
-/// kernels.
+/// Share of the work that goes to the whole table, and to its frames, relative to the kernels.
 const BALANCE_WEIGHT: f64 = 0.03;
+/// The same for single coordinates. Kernels and a coordinate pull on all samples of a small table at once;
+/// with 0.03 the first steps of slices, which are large, overshoot.
+const COORDINATE_WEIGHT: f64 = 0.01;
 
 impl Term {
     /// The terms for blue-noise error: each group under each kernel, and as much of the whole table, of each
@@ -127,13 +129,13 @@ impl Term {
             let of = |group| Self::uniform(&classes, Role::Descend, group, 1.0 / kernels.len() as f64);
             terms.extend(groups.iter().map(of));
         }
-        let mut balance = |classes: Classes, groups: &[DimensionGroup]| {
-            let of = |group| Self::uniform(&classes, Role::Balance, group, BALANCE_WEIGHT);
+        let mut balance = |classes: Classes, groups: &[DimensionGroup], weight: f64| {
+            let of = |group| Self::uniform(&classes, Role::Balance, group, weight);
             terms.extend(groups.iter().map(of));
         };
-        balance(Classes::WholeTable, groups);
+        balance(Classes::WholeTable, groups, BALANCE_WEIGHT);
         if extent.frames > 1 {
-            balance(Classes::PerFrame, groups);
+            balance(Classes::PerFrame, groups, BALANCE_WEIGHT);
         }
         // A slice says little of a single coordinate next to its faces, where the pull of filters has no
         // equal from beyond.
@@ -143,7 +145,7 @@ impl Term {
         let alone = |dim: &usize| groups.iter().any(|group| group.dims == [*dim]);
         let rest: Vec<_> =
             seen.iter().filter(|dim| !alone(dim)).map(|&dim| DimensionGroup::new([dim])).collect();
-        balance(Classes::WholeTable, &rest);
+        balance(Classes::WholeTable, &rest, COORDINATE_WEIGHT);
         terms
     }
 

@@ -19,10 +19,10 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Until {
-    /// After as much work as is usually worth it: sweeps for about a second of one core, 1,000 at most (10,000
-    /// where all groups are single dimensions, which take many and take them fast) and 3 at least, with a
-    /// frame to begin with as in [`Until::Sweeps`]; 320 slices per pixel and frame, or per class, where an
-    /// objective has no closed form. The same work on every machine.
+    /// After as much work as is usually worth it: sweeps for about a second of one core, 1,000 at most
+    /// (10,000 where all groups are single dimensions, which take many and take them fast) and 3 at least,
+    /// with a frame to begin with as in [`Until::Sweeps`]; 320 slices per pixel and frame, or per class,
+    /// where an objective has no closed form. The same work on every machine.
     Usual,
     /// After this many slices per pixel and frame, or per class of a point set (rounded up to whole steps).
     SlicesPerClass(u64),
@@ -34,8 +34,8 @@ pub enum Until {
     /// As much of each.
     Work(Work),
     /// After about this many seconds, with what gets furthest by then: sweeps where the objective has its
-    /// closed form, after a fifth of the time for the frame that an animation begins with; slices elsewhere. A
-    /// brief calibration fixes how much work fits, schedules follow it, and
+    /// closed form, after a fifth of the time for the frame that an animation begins with; slices elsewhere.
+    /// A brief calibration fixes how much work fits, schedules follow it, and
     /// [`RunReport::work`](crate::RunReport::work) makes the very same table again, anywhere.
     Seconds(f64),
     /// As soon as the mean squared displacement falls by less than the share `improvement` from one window to

@@ -6,6 +6,8 @@ pub(crate) mod distance;
 mod piece;
 mod pieces;
 mod projected;
+mod square;
 
 pub(crate) use pieces::Pieces;
 pub use projected::Projected;
+pub(crate) use square::SquareLaw;

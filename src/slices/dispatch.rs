@@ -46,8 +46,8 @@ fn instruction_sets_agree() {
                 [Picked::Batch(Role::Descend), Picked::Batch(Role::Balance), Picked::Each(Role::Balance)]
             {
                 let baseline = transported(pulp::Scalar, &objective, &points, pick);
-                // A step may be none of the whole table's turns.
-                assert!(pick == Picked::Batch(Role::Balance) || !baseline.1.is_empty());
+                // A step may be none of the whole table's turns, and sweeps balance an interval without.
+                assert!(pick.role() == Role::Balance || !baseline.1.is_empty());
                 #[cfg(target_arch = "x86_64")]
                 {
                     let avx2 = pulp::x86::V3::try_new();

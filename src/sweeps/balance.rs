@@ -6,8 +6,8 @@ use std::f64::consts::PI;
 use pulp::Arch;
 use rayon::prelude::*;
 
-use super::lines::Line;
-use super::modes::Modes;
+use super::lines::{Line, LineBuffers};
+use super::modes::{ModeBuffers, Modes};
 use super::tiles::Tiles;
 use crate::classes::Classes;
 use crate::objective::Objective;
@@ -19,6 +19,8 @@ use crate::table::domain::BELOW_ONE;
 #[derive(Clone, Debug)]
 pub(super) struct Balance {
     parts: Vec<Part>,
+    line_buffers: LineBuffers,
+    mode_buffers: ModeBuffers,
     /// Turns per sweep, and lines of a part per turn.
     turns: usize,
     lines: u64,
@@ -37,7 +39,8 @@ struct Part {
 }
 
 /// Samples from which on one line a sweep is too little. What it leaves falls less than the noise of as many
-/// random samples does: 512×512 after 60 sweeps has a bias of 1.7 with one line a sweep, and of 0.13 with four.
+/// random samples does: 512×512 after 60 sweeps has a bias of 1.7 with one line a sweep, and of 0.13 with
+/// four.
 const LARGE: usize = 1 << 16;
 
 impl Balance {
@@ -56,7 +59,8 @@ impl Balance {
         parts.dedup_by(|a, b| (&a.dims, a.per_frame) == (&b.dims, b.per_frame));
         let large = samples >= LARGE;
         let (turns, lines) = if large { (2, 2) } else { (1, 1) };
-        Self { parts, turns, lines }
+        let (line_buffers, mode_buffers) = (LineBuffers::default(), ModeBuffers::default());
+        Self { parts, line_buffers, mode_buffers, turns, lines }
     }
 
     /// Turns per sweep.
@@ -65,29 +69,29 @@ impl Balance {
     }
 
     /// Brings every part `share` of the way, as the `turn` has it.
-    pub(super) fn advance(&self, arch: Arch, tiles: &mut Tiles, turn: u64, share: f64) {
-        for part in &self.parts {
+    pub(super) fn advance(&mut self, arch: Arch, tiles: &mut Tiles, turn: u64, share: f64) {
+        let Self { parts, line_buffers, mode_buffers, lines, .. } = self;
+        for part in parts.iter() {
             match (&part.modes, part.dims.as_slice()) {
-                (Some(modes), _) => modes.advance(arch, tiles, part.per_frame, share),
+                (Some(modes), _) => modes.advance(arch, tiles, mode_buffers, part.per_frame, share),
                 (None, [_, _]) => {
-                    for line in 0..self.lines {
-                        let angle = PI * ((turn * self.lines + line) as f64 * GOLDEN_RATIO).fract();
-                        let direction = [angle.cos(), angle.sin()];
-                        Line::new(&part.dims, &direction, part.bins).advance(
-                            arch,
-                            tiles,
-                            part.per_frame,
-                            share,
-                        );
+                    for line in 0..*lines {
+                        let angle = PI * ((turn * *lines + line) as f64 * GOLDEN_RATIO).fract();
+                        let line = Line::new(&part.dims, &[angle.cos(), angle.sin()], part.bins);
+                        line.advance(arch, tiles, line_buffers, part.per_frame, share);
                     }
                 }
-                _ => Line::new(&part.dims, &[1.0], part.bins).advance(arch, tiles, part.per_frame, share),
+                _ => {
+                    let line = Line::new(&part.dims, &[1.0], part.bins);
+                    line.advance(arch, tiles, line_buffers, part.per_frame, share);
+                }
             }
         }
     }
 
     /// Gives coordinates of which a single one is balanced over the whole table the values `(rank + ½) / n`:
-    /// then their marginals are exact up to the faces, and no value is 0. `samples` are those that are demanded.
+    /// then their marginals are exact up to the faces, and no value is 0. `samples` are those that are
+    /// demanded.
     pub(super) fn settle(&self, points: &mut [f32], dims: usize, samples: &[u32]) {
         let mut ranks: Vec<(f32, u32)> = Vec::with_capacity(samples.len());
         for part in self.parts.iter().filter(|part| part.dims.len() == 1 && !part.per_frame) {

@@ -5,32 +5,40 @@ use pulp::{Arch, NullaryFnOnce};
 use rayon::prelude::*;
 
 use super::reflect;
-use super::tiles::{Cell, Tiles};
-use crate::laws::Projected;
+use super::tiles::{Cell, StoredRow, Tiles};
+use crate::laws::SquareLaw;
 use crate::simd::{LANES, Row};
 
-/// A direction, and the law of the cube there.
-#[derive(Debug)]
+/// A direction in one or two dimensions, and the law of the cube there.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Line {
-    /// Dimensions of the table, and the components along them.
-    components: Vec<(usize, f32)>,
-    law: Projected,
+    /// A dimension of the table, and the component along it; the second is 0 on a line of one dimension.
+    components: [(usize, f32); 2],
+    law: SquareLaw,
     lowest: f32,
     /// Bins per unit.
     scale: f32,
     bins: usize,
 }
 
+/// Buffers that stay.
+#[derive(Clone, Debug, Default)]
+pub(super) struct LineBuffers {
+    counts: Vec<u32>,
+    motions: Vec<f32>,
+}
+
+/// Parts of a table that are counted apart, whatever the number of threads.
+const PARTS: usize = 8;
+
 impl Line {
     pub(super) fn new(dims: &[usize], direction: &[f64], bins: usize) -> Self {
-        let law = Projected::of_cube(direction);
+        let law = SquareLaw::new(direction);
         let (lowest, highest) = law.support();
+        let component =
+            |k: usize| (dims.get(k).copied().unwrap_or(dims[0]), *direction.get(k).unwrap_or(&0.0) as f32);
         Self {
-            components: dims
-                .iter()
-                .copied()
-                .zip(direction.iter().map(|&component| component as f32))
-                .collect(),
+            components: [component(0), component(1)],
             lowest: lowest as f32,
             scale: (bins as f64 / (highest - lowest)) as f32,
             law,
@@ -39,75 +47,62 @@ impl Line {
     }
 
     /// Moves all samples, or those of each frame, `share` of the way.
-    pub(super) fn advance(&self, arch: Arch, tiles: &mut Tiles, per_frame: bool, share: f64) {
+    pub(super) fn advance(
+        &self,
+        arch: Arch,
+        tiles: &mut Tiles,
+        buffers: &mut LineBuffers,
+        per_frame: bool,
+        share: f64,
+    ) {
         let frames = if per_frame { tiles.frames() } else { 1 };
-        let rows = tiles.cell_rows();
-        let parts = PARTS.min(rows.len());
-        let part = |part: usize| rows.len() * part / parts..rows.len() * (part + 1) / parts;
-        let counts: Vec<Vec<u32>> = (0..parts)
-            .into_par_iter()
-            .map(|index| {
-                let mut counts = vec![0_u32; frames * self.bins];
-                for row in part(index) {
-                    arch.dispatch(Count { line: self, tiles, per_frame, row, counts: &mut counts });
-                }
-                counts
-            })
-            .collect();
-        let mut counts = counts.into_iter();
-        let mut sum = counts.next().unwrap_or_default();
-        for counts in counts {
-            sum.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
-        }
-        let motions: Vec<f32> =
-            sum.chunks_exact(self.bins).flat_map(|counts| self.motions(counts, share)).collect();
-        let frames = tiles.frames_by_time();
-        tiles.for_each_row(|time, _, cells, stride| {
-            let firsts =
-                frames[time].map(|frame| if per_frame { (frame * (self.bins + 1)) as u32 } else { 0 });
-            arch.dispatch(Move { line: self, motions: &motions, firsts, cells, stride });
+        let LineBuffers { counts, motions } = buffers;
+        let (len, rows) = (frames * self.bins, tiles.cell_rows());
+        counts.clear();
+        counts.resize(PARTS * len, 0);
+        counts.par_chunks_exact_mut(len).enumerate().for_each(|(part, counts)| {
+            for row in rows.len() * part / PARTS..rows.len() * (part + 1) / PARTS {
+                arch.dispatch(Count { line: self, tiles, per_frame, row, counts });
+            }
         });
+        let (counts, others) = counts.split_at_mut(len);
+        for other in others.chunks_exact(len) {
+            counts.iter_mut().zip(other).for_each(|(sum, count)| *sum += count);
+        }
+        motions.clear();
+        counts.chunks_exact(self.bins).for_each(|counts| self.add_motions(counts, share, motions));
+        tiles.for_each_row(|row| arch.dispatch(Move { line: self, motions, per_frame, row }));
     }
 
     /// What moves the samples at the boundaries of the bins to where the law has as much below.
-    fn motions(&self, counts: &[u32], share: f64) -> Vec<f32> {
-        let total: u32 = counts.iter().sum();
+    fn add_motions(&self, counts: &[u32], share: f64, motions: &mut Vec<f32>) {
+        let total = f64::from(counts.iter().sum::<u32>().max(1));
         let (lowest, highest) = self.law.support();
         let mut below = 0;
-        let motion = |(edge, count): (usize, u32)| {
+        motions.push(0.0);
+        motions.extend((1..).zip(counts).map(|(edge, count)| {
             below += count;
-            let at = lowest + (highest - lowest) * edge as f64 / self.bins as f64;
-            (share * (self.law.quantile(f64::from(below) / f64::from(total.max(1))) - at)) as f32
-        };
-        let mut motions = vec![0.0];
-        motions.extend((1..).zip(counts.iter().copied()).map(motion));
-        motions
+            let at = lowest + (highest - lowest) * f64::from(edge) / self.bins as f64;
+            (share * (self.law.quantile(f64::from(below) / total) - at)) as f32
+        }));
     }
 
     /// Bins of the samples of a vector, and where in them they are.
     #[inline(always)]
     fn place(&self, cell: &[Cell]) -> ([u32; LANES], Row) {
-        let mut at = [0.0; LANES];
-        for &(dim, component) in &self.components {
-            let Cell(values) = cell[dim];
-            for lane in 0..LANES {
-                at[lane] += component * values[lane];
-            }
-        }
+        let [(first, along), (second, across)] = self.components;
+        let [Cell(x), Cell(y)] = [cell[first], cell[second]];
         let (mut bins, mut shares) = ([0; LANES], [0.0; LANES]);
         let last = (self.bins - 1) as f32;
         for lane in 0..LANES {
-            let place = (at[lane] - self.lowest) * self.scale;
-            let bin = place.max(0.0).min(last) as i32;
+            let place = (along * x[lane] + across * y[lane] - self.lowest) * self.scale;
+            let bin = place.clamp(0.0, last) as i32;
             bins[lane] = bin as u32;
             shares[lane] = place - bin as f32;
         }
         (bins, shares)
     }
 }
-
-/// Parts of a table that are counted apart, whatever the number of threads.
-const PARTS: usize = 8;
 
 struct Count<'a> {
     line: &'a Line,
@@ -136,9 +131,8 @@ impl NullaryFnOnce for Count<'_> {
 struct Move<'a> {
     line: &'a Line,
     motions: &'a [f32],
-    firsts: [u32; LANES],
-    cells: &'a mut [Cell],
-    stride: usize,
+    per_frame: bool,
+    row: StoredRow<'a>,
 }
 
 impl NullaryFnOnce for Move<'_> {
@@ -146,19 +140,20 @@ impl NullaryFnOnce for Move<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { line, motions, firsts, cells, stride } = self;
+        let Self { line, motions, per_frame, row: StoredRow { frames, cells, stride, .. } } = self;
+        let firsts = frames.map(|frame| if per_frame { (frame * (line.bins + 1)) as u32 } else { 0 });
         for cell in cells.chunks_exact_mut(stride) {
             let (bins, shares) = line.place(cell);
-            let mut along = [0.0; LANES];
+            let mut motion = [0.0; LANES];
             for lane in 0..LANES {
                 let at = (firsts[lane] + bins[lane]) as usize;
                 let ends = &motions[at..at + 2];
-                along[lane] = ends[0] + shares[lane] * (ends[1] - ends[0]);
+                motion[lane] = ends[0] + shares[lane] * (ends[1] - ends[0]);
             }
-            for &(dim, component) in &line.components {
+            for (dim, component) in line.components {
                 let Cell(values) = &mut cell[dim];
                 for lane in 0..LANES {
-                    values[lane] = reflect(values[lane] + component * along[lane]);
+                    values[lane] = reflect(values[lane] + component * motion[lane]);
                 }
             }
         }

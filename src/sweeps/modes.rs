@@ -15,8 +15,9 @@ use pulp::{Arch, NullaryFnOnce};
 use rayon::prelude::*;
 
 use super::reflect;
-use super::tiles::{Cell, Tiles};
+use super::tiles::{Cell, StoredRow, Tiles};
 use crate::simd::{LANES, Row};
+use crate::table::extent::MOST_DIMS;
 
 /// Products of cosines in some dimensions of a table.
 #[derive(Clone, Debug)]
@@ -48,15 +49,33 @@ fn degrees(dims: usize) -> [usize; 2] {
 }
 
 /// `cos(π k x)` and `sin(π k x)` of one coordinate, for `k` from 0 on.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 struct Wave {
     cos: Row,
     sin: Row,
 }
 
-/// Room for the waves of a vector.
+/// The waves of a vector: by dimension of the group, and frequency.
+type Waves = [Wave; MOST_WAVES];
+
+/// Four dimensions with frequencies up to 10, or 64 up to 2.
+const MOST_WAVES: usize = 192;
+
+const SILENCE: Wave = Wave { cos: [1.0; LANES], sin: [0.0; LANES] };
+
+/// Buffers that stay.
 #[derive(Clone, Debug, Default)]
-struct Waves(Vec<Wave>);
+pub(super) struct ModeBuffers {
+    /// Of the rows that the parts are at.
+    sums: Vec<Row>,
+    /// By part and frame.
+    totals: Vec<f64>,
+    /// By place in time.
+    means: Vec<Row>,
+}
+
+/// Parts of a table that are added up apart, whatever the number of threads.
+const PARTS: usize = 8;
 
 impl Modes {
     pub(super) fn new(dims: &[usize]) -> Self {
@@ -84,41 +103,59 @@ impl Modes {
     }
 
     /// Moves all samples, or those of each frame, `share` of the way to where the modes are silent.
-    pub(super) fn advance(&self, arch: Arch, tiles: &mut Tiles, per_frame: bool, share: f64) {
-        let len = self.modes.len();
-        let frame = |frame: usize| if per_frame { frame * (len + 1) } else { 0 };
-        // Added up in the order of the rows, whatever the threads.
-        let rows = tiles.cell_rows().into_par_iter();
-        let sums: Vec<Vec<Row>> = rows.map(|row| arch.dispatch(Sum { modes: self, tiles, row })).collect();
-        let mut means = vec![0.0_f64; frame(tiles.frames() - 1) + len + 1];
-        for (row, sums) in sums.iter().enumerate() {
-            for (lane, of) in tiles.frames_of_row(row).into_iter().enumerate() {
-                let means = &mut means[frame(of)..];
-                means.iter_mut().zip(sums).for_each(|(mean, sum)| *mean += f64::from(sum[lane]));
+    pub(super) fn advance(
+        &self,
+        arch: Arch,
+        tiles: &mut Tiles,
+        buffers: &mut ModeBuffers,
+        per_frame: bool,
+        share: f64,
+    ) {
+        let ModeBuffers { sums, totals, means } = buffers;
+        let (len, rows) = (self.modes.len() + 1, tiles.cell_rows());
+        let frames = if per_frame { tiles.frames() } else { 1 };
+        let of = |frame: usize| if per_frame { frame * len } else { 0 };
+        sums.resize(PARTS * len, [0.0; LANES]);
+        totals.clear();
+        totals.resize(PARTS * frames * len, 0.0);
+        let parts = totals.par_chunks_exact_mut(frames * len).zip(sums.par_chunks_exact_mut(len)).enumerate();
+        parts.for_each(|(part, (totals, sums))| {
+            for row in rows.len() * part / PARTS..rows.len() * (part + 1) / PARTS {
+                arch.dispatch(Sum { modes: self, tiles, row, sums });
+                for (lane, frame) in tiles.frames_of_row(row).into_iter().enumerate() {
+                    let totals = totals[of(frame)..].iter_mut().zip(&*sums);
+                    totals.for_each(|(total, sum)| *total += f64::from(sum[lane]));
+                }
             }
+        });
+        let (totals, others) = totals.split_at_mut(frames * len);
+        for other in others.chunks_exact(frames * len) {
+            totals.iter_mut().zip(other).for_each(|(total, other)| *total += other);
         }
-        for means in means.chunks_exact_mut(len + 1) {
-            let (count, means) = means.split_last_mut().expect("the last is the number of samples");
-            means.iter_mut().for_each(|mean| *mean *= share / count.max(1.0));
+        means.clear();
+        for time in 0..tiles.times() {
+            means.extend((0..self.modes.len()).map(|mode| {
+                tiles.frames_at(time).map(|frame| {
+                    let of_frame = &totals[of(frame)..][..len];
+                    (share * of_frame[mode] / of_frame[len - 1].max(1.0)) as f32
+                })
+            }));
         }
-        let of_lanes = |frames: &[usize; LANES]| -> Vec<Row> {
-            (0..len).map(|mode| frames.map(|of| means[frame(of) + mode] as f32)).collect()
-        };
-        let means: Vec<Vec<Row>> = tiles.frames_by_time().iter().map(of_lanes).collect();
-        tiles.for_each_row(|time, dims, cells, stride| {
-            arch.dispatch(Silence { modes: self, means: &means[time], dims, cells, stride });
+        tiles.for_each_row(|row| {
+            let means = &means[row.time * self.modes.len()..][..self.modes.len()];
+            arch.dispatch(Silence { modes: self, means, row });
         });
     }
 
-    /// Adds every mode's values at the samples of a vector, whose coordinates are given, times `counts`, and then
-    /// the counts.
+    /// Adds every mode's values at the samples of a vector, whose coordinates are given, times `counts`, and
+    /// then the counts.
     #[inline(always)]
     fn add(&self, at: impl Fn(usize) -> Row, counts: &Row, waves: &mut Waves, sums: &mut [Row]) {
         self.wave(at, waves);
         for (sum, mode) in sums.iter_mut().zip(&self.modes) {
             let mut product = *counts;
             for &(dim, frequency) in &mode.factors {
-                let Wave { cos, .. } = &waves.0[dim * (self.highest + 1) + frequency];
+                let Wave { cos, .. } = &waves[dim * (self.highest + 1) + frequency];
                 for lane in 0..LANES {
                     product[lane] *= cos[lane];
                 }
@@ -139,12 +176,12 @@ impl Modes {
         self.wave(at, waves);
         for (mean, mode) in means.iter().zip(&self.modes) {
             for (&(dim, frequency), pull) in mode.factors.iter().zip(&mode.pulls) {
-                let mut product = waves.0[dim * (self.highest + 1) + frequency].sin;
+                let mut product = waves[dim * (self.highest + 1) + frequency].sin;
                 for lane in 0..LANES {
                     product[lane] *= pull * mean[lane];
                 }
                 for &(other, frequency) in mode.factors.iter().filter(|&&(other, _)| other != dim) {
-                    let Wave { cos, .. } = &waves.0[other * (self.highest + 1) + frequency];
+                    let Wave { cos, .. } = &waves[other * (self.highest + 1) + frequency];
                     for lane in 0..LANES {
                         product[lane] *= cos[lane];
                     }
@@ -159,12 +196,11 @@ impl Modes {
 
     /// Cosines and sines of all frequencies, by the addition theorem.
     #[inline(always)]
-    fn wave(&self, at: impl Fn(usize) -> Row, Waves(waves): &mut Waves) {
-        waves.resize(self.dims.len() * (self.highest + 1), Wave { cos: [1.0; LANES], sin: [0.0; LANES] });
+    fn wave(&self, at: impl Fn(usize) -> Row, waves: &mut Waves) {
         for (waves, &dim) in waves.chunks_exact_mut(self.highest + 1).zip(&self.dims) {
             let first = Wave::of(&at(dim));
             for k in 1..=self.highest {
-                let last = waves[k - 1].clone();
+                let last = waves[k - 1];
                 for lane in 0..LANES {
                     waves[k].cos[lane] = last.cos[lane] * first.cos[lane] - last.sin[lane] * first.sin[lane];
                     waves[k].sin[lane] = last.sin[lane] * first.cos[lane] + last.cos[lane] * first.sin[lane];
@@ -186,8 +222,8 @@ impl Mode {
 }
 
 impl Wave {
-    /// `cos(π x)` and `sin(π x)` for `x` in `[0, 1]`, by their series at ½: good for 4e-6 there, and for 2e-5 in
-    /// the faces.
+    /// `cos(π x)` and `sin(π x)` for `x` in `[0, 1]`, by their series at ½: good for 4e-6 there, and for 2e-5
+    /// in the faces.
     #[inline(always)]
     fn of(at: &Row) -> Self {
         let mut wave = Self { cos: [0.0; LANES], sin: [0.0; LANES] };
@@ -211,20 +247,21 @@ struct Sum<'a> {
     modes: &'a Modes,
     tiles: &'a Tiles,
     row: usize,
+    sums: &'a mut [Row],
 }
 
 impl NullaryFnOnce for Sum<'_> {
-    type Output = Vec<Row>;
+    type Output = ();
 
     #[inline(always)]
-    fn call(self) -> Vec<Row> {
-        let Self { modes, tiles, row } = self;
-        let (mut sums, mut waves) = (vec![[0.0; LANES]; modes.modes.len() + 1], Waves::default());
+    fn call(self) {
+        let Self { modes, tiles, row, sums } = self;
+        sums.fill([0.0; LANES]);
+        let mut waves = [SILENCE; MOST_WAVES];
         for (cell, owners) in tiles.cells_of(row) {
             let counts = std::array::from_fn(|lane| f32::from(owners >> lane & 1));
-            modes.add(|dim| cell[dim].0, &counts, &mut waves, &mut sums);
+            modes.add(|dim| cell[dim].0, &counts, &mut waves, sums);
         }
-        sums
     }
 }
 
@@ -232,9 +269,7 @@ impl NullaryFnOnce for Sum<'_> {
 struct Silence<'a> {
     modes: &'a Modes,
     means: &'a [Row],
-    dims: usize,
-    cells: &'a mut [Cell],
-    stride: usize,
+    row: StoredRow<'a>,
 }
 
 impl NullaryFnOnce for Silence<'_> {
@@ -242,12 +277,12 @@ impl NullaryFnOnce for Silence<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { modes, means, dims, cells, stride } = self;
-        let (mut motions, mut waves) = (vec![[0.0; LANES]; dims], Waves::default());
+        let Self { modes, means, row: StoredRow { dims, cells, stride, .. } } = self;
+        let (mut motions, mut waves) = ([[0.0; LANES]; MOST_DIMS], [SILENCE; MOST_WAVES]);
         for cell in cells.chunks_exact_mut(stride) {
-            motions.fill([0.0; LANES]);
+            motions[..dims].fill([0.0; LANES]);
             modes.silence(|dim| cell[dim].0, means, &mut waves, &mut motions);
-            for (Cell(values), motion) in cell.iter_mut().zip(&motions) {
+            for (Cell(values), motion) in cell.iter_mut().zip(&motions[..dims]) {
                 for lane in 0..LANES {
                     values[lane] = reflect(values[lane] + motion[lane]);
                 }

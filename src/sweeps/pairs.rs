@@ -133,8 +133,8 @@ impl Pairs {
         })
     }
 
-    /// Adds `factor` times the pull on the samples of some runs, at most [`BLOCK`], to `pulls`, for each run a
-    /// row of lanes per dimension of the table: the mean unit vector away from their neighbours, less that
+    /// Adds `factor` times the pull on the samples of some runs, at most [`BLOCK`], to `pulls`, for each run
+    /// a row of lanes per dimension of the table: the mean unit vector away from their neighbours, less that
     /// away from a uniform point.
     #[inline(always)]
     pub(super) fn add_pulls(&self, tiles: &Tiles, runs: &[Run], factors: &[f32], pulls: &mut [Row]) {
@@ -262,8 +262,8 @@ impl Pairs {
 /// Runs whose pulls are computed together.
 pub(super) const BLOCK: usize = 8;
 
-/// Of a sample on a line, see [`Pairs::room`]: 64×64 with one dimension ends at 0.12 with 1, at 0.06 with 4 (200
-/// sweeps).
+/// Of a sample on a line, see [`Pairs::room`]: 64×64 with one dimension ends at 0.12 with 1, at 0.06 with 4
+/// (200 sweeps).
 const ROOMS_ON_A_LINE: f64 = 4.0;
 
 /// Length of a ramp, in lengths of a soft root.

@@ -31,6 +31,8 @@ pub(super) struct Tiles {
     partial: bool,
     /// Along each axis, where the cells are stored.
     copies: [Vec<Vec<Copies>>; 3],
+    /// The frames of all lanes, by place in time.
+    frames: Vec<[usize; LANES]>,
     /// Per cell, the tiles that own a demanded site there: one bit each.
     owners: Vec<u16>,
 }
@@ -39,6 +41,18 @@ pub(super) struct Tiles {
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct Cell(pub Row);
+
+/// A row of vectors with its margins.
+pub(super) struct StoredRow<'a> {
+    /// Place in time.
+    pub time: usize,
+    /// The frames of all lanes.
+    pub frames: [usize; LANES],
+    pub dims: usize,
+    pub cells: &'a mut [Cell],
+    /// Vectors that belong together.
+    pub stride: usize,
+}
 
 /// One sample of the same cell of all tiles.
 #[derive(Clone, Copy, Debug)]
@@ -69,7 +83,12 @@ impl Tiles {
             axes[2].copies(|lane| lane % width, 1),
         ];
         let (wanted, values) = (wanted.clone(), Vec::new());
-        let mut tiles = Self { extent, dims, axes, values, wanted, partial, copies, owners: vec![0; cells] };
+        let frames = Vec::new();
+        let mut tiles =
+            Self { extent, dims, axes, values, wanted, partial, copies, frames, owners: vec![0; cells] };
+        let frame = |time: usize, lane: usize| tiles.axes[0].site(tiles.tile(lane)[0], time);
+        tiles.frames =
+            (0..tiles.axes[0].stored()).map(|time| std::array::from_fn(|lane| frame(time, lane))).collect();
         for index in 0..cells {
             let cell = tiles.run(index * extent.spp).cell;
             let owns = |lane: &usize| {
@@ -190,6 +209,16 @@ impl Tiles {
         self.extent.frames
     }
 
+    /// The frames of all lanes at a place in time.
+    pub(super) fn frames_at(&self, time: usize) -> [usize; LANES] {
+        self.frames[time]
+    }
+
+    /// Places in time.
+    pub(super) fn times(&self) -> usize {
+        self.axes[0].stored()
+    }
+
     /// Rows of cells, of all samples.
     pub(super) fn cell_rows(&self) -> Range<usize> {
         0..self.runs() / self.axes[2].cells()
@@ -212,25 +241,19 @@ impl Tiles {
 
     /// The frames of a row of cells, by lane.
     pub(super) fn frames_of_row(&self, row: usize) -> [usize; LANES] {
-        self.frames_at(self.axes[0].place(self.row_start(row).cell[0], 0))
+        self.frames[self.axes[0].place(self.row_start(row).cell[0], 0)]
     }
 
-    /// The frames of all lanes, by place in time.
-    pub(super) fn frames_by_time(&self) -> Vec<[usize; LANES]> {
-        (0..self.axes[0].stored()).map(|time| self.frames_at(time)).collect()
-    }
-
-    fn frames_at(&self, time: usize) -> [usize; LANES] {
-        std::array::from_fn(|lane| self.axes[0].site(self.tile(lane)[0], time))
-    }
-
-    /// Visits all rows with their margins: place in time, dimensions, vectors, and how many belong together.
-    /// What moves samples by their values alone moves their copies just so.
-    pub(super) fn for_each_row(&mut self, visit: impl Fn(usize, usize, &mut [Cell], usize) + Sync) {
-        let (dims, stride) = (self.dims, self.planes());
+    /// Visits all rows with their margins. What moves samples by their values alone moves their copies just
+    /// so.
+    pub(super) fn for_each_row(&mut self, visit: impl Fn(StoredRow) + Sync) {
+        let (dims, stride, frames) = (self.dims, self.planes(), &self.frames);
         let [times, ys, xs] = self.axes.each_ref().map(Axis::stored);
         let rows = self.values.par_chunks_exact_mut(xs * stride).enumerate().with_min_len(ROWS_PER_TASK);
-        rows.for_each(|(row, cells)| visit(row / ys % times, dims, cells, stride));
+        rows.for_each(|(row, cells)| {
+            let time = row / ys % times;
+            visit(StoredRow { time, frames: frames[time], dims, cells, stride });
+        });
     }
 
     /// Copies the demanded samples out.

@@ -59,8 +59,8 @@ fn sort_shared(projections: &[f32], keys: &mut Vec<u64>, order: &mut [u32]) {
     order.par_iter_mut().zip(keys).with_min_len(1 << 12).for_each(|(order, key)| *order = *key as u32);
 }
 
-/// Sorts by two digits of the projection's place in the support: to a 4-millionth of it, and by position
-/// below.
+/// Sorts by two digits of the projection's place in the support, to a 4-millionth of it, and by comparison
+/// what is closer.
 fn sort_digits(
     projections: &[f32],
     (lowest, extent): (f64, f64),
@@ -96,6 +96,12 @@ fn sort_digits(
         let start = &mut high[(entry >> (32 - DIGIT)) as usize];
         order[*start as usize] = entry & (u32::MAX >> DIGIT);
         *start += 1;
+    }
+    // What the digits leave equal is next to each other.
+    let place_of = |position: u32| place(projections[position as usize]);
+    let value = |&position: &u32| projections[position as usize];
+    for equal in order.chunk_by_mut(|&a, &b| place_of(a) == place_of(b)).filter(|equal| equal.len() > 1) {
+        equal.sort_unstable_by(|a, b| value(a).total_cmp(&value(b)).then(a.cmp(b)));
     }
 }
 

@@ -51,7 +51,9 @@ fn json_holds_the_figures() {
     let home = home();
     let table = json(home.path(), SHORT[0]);
     assert_eq!((&table["sweeps"], &table["slices_per_class"]), (&2.into(), &0.into()));
-    assert_eq!((&table["steps"], &table["ended_early"]), (&32.into(), &false.into()));
+    // 16 of each sweep, and one of each sweep of the frame that the two begin with.
+    assert_eq!((&table["frame_sweeps"], &table["steps"]), (&2.into(), &34.into()));
+    assert_eq!(&table["ended_early"], &false);
     assert!(table["seconds"].as_f64() > Some(0.0));
     let ratio = |when: &str| table["bound"][when]["ratio_to_white_noise"].as_f64().unwrap();
     assert!(ratio("after") < ratio("before"), "{table}");

@@ -65,8 +65,13 @@ fn every_flag_reaches_the_configuration() {
     let group = |dims: &[usize], weight| fsot::config::DimensionGroup { dims: dims.to_vec(), weight };
     let groups = [group(&[0, 1], 1.0), group(&[2, 3], 1.0), group(&[0, 1, 2, 3], 0.5)];
     let form = fsot::classes::FilterForm::LevelSets;
-    assert_eq!(config.terms, fsot::config::Term::blue_noise(&[kernel], form, &groups, &config.extent));
-    assert_eq!(metadata.kernels.len(), 3);
+    let kernels = [kernel];
+    let mut terms = fsot::config::Term::blue_noise(&kernels, form, &groups, &config.extent);
+    assert_eq!(terms.iter().filter(|term| term.role == fsot::config::Role::Descend).count(), 3);
+    // The pixel by itself, its neighbours, the frame.
+    terms.extend(fsot::config::Term::companions(&kernels, form, &groups, &config.extent));
+    assert_eq!(config.terms, terms);
+    assert_eq!(metadata.kernels.len(), 3 * 4);
 }
 
 #[test]
@@ -117,8 +122,8 @@ fn seconds_and_then_their_work_give_identical_bytes() {
     let (out, _) = succeed(home.path(), &format!("{SMALL} --no-bound --seconds 0.3"));
     let timed = fs::read(home.path().join("table.npy")).unwrap();
     let words: Vec<&str> = out.split_whitespace().collect();
-    let flag = words.iter().position(|&word| word == "--slices-per-class").expect(&out);
-    succeed(home.path(), &format!("{SMALL} --no-bound {}", words[flag..flag + 4].join(" ")));
+    let flag = words.iter().position(|&word| word == "--frame-sweeps").expect(&out);
+    succeed(home.path(), &format!("{SMALL} --no-bound {}", words[flag..flag + 6].join(" ")));
     assert!(fs::read(home.path().join("table.npy")).unwrap() == timed, "{out}");
 }
 
