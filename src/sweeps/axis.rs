@@ -56,6 +56,11 @@ impl Axis {
         self.cells + 2 * self.margin
     }
 
+    /// Places of the cells.
+    pub(super) fn own_places(&self) -> Range<usize> {
+        self.margin..self.margin + self.cells
+    }
+
     /// Place of what is `offset` sites after a cell.
     #[inline(always)]
     pub(super) fn place(&self, cell: usize, offset: i32) -> usize {

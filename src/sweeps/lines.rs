@@ -5,7 +5,7 @@ use pulp::{Arch, NullaryFnOnce};
 use rayon::prelude::*;
 
 use super::reflect;
-use super::tiles::{Cell, StoredRow, Tiles};
+use super::tiles::{Cell, CellRow, Tiles};
 use crate::laws::SquareLaw;
 use crate::simd::{LANES, Row};
 
@@ -29,7 +29,12 @@ pub(super) struct LineBuffers {
 }
 
 /// Parts of a table that are counted apart, whatever the number of threads.
-const PARTS: usize = 8;
+pub(super) const PARTS: usize = 8;
+
+/// Parts of so many rows that are worth handing to a thread.
+pub(super) fn parts_per_task(rows: usize) -> usize {
+    (PARTS * 32).div_ceil(rows.max(1)).clamp(1, PARTS)
+}
 
 impl Line {
     pub(super) fn new(dims: &[usize], direction: &[f64], bins: usize) -> Self {
@@ -60,7 +65,8 @@ impl Line {
         let (len, rows) = (frames * self.bins, tiles.cell_rows());
         counts.clear();
         counts.resize(PARTS * len, 0);
-        counts.par_chunks_exact_mut(len).enumerate().for_each(|(part, counts)| {
+        let parts = counts.par_chunks_exact_mut(len).enumerate().with_min_len(parts_per_task(rows.len()));
+        parts.for_each(|(part, counts)| {
             for row in rows.len() * part / PARTS..rows.len() * (part + 1) / PARTS {
                 arch.dispatch(Count { line: self, tiles, per_frame, row, counts });
             }
@@ -132,7 +138,7 @@ struct Move<'a> {
     line: &'a Line,
     motions: &'a [f32],
     per_frame: bool,
-    row: StoredRow<'a>,
+    row: CellRow<'a>,
 }
 
 impl NullaryFnOnce for Move<'_> {
@@ -140,7 +146,7 @@ impl NullaryFnOnce for Move<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { line, motions, per_frame, row: StoredRow { frames, cells, stride, .. } } = self;
+        let Self { line, motions, per_frame, row: CellRow { frames, cells, stride, .. } } = self;
         let firsts = frames.map(|frame| if per_frame { (frame * (line.bins + 1)) as u32 } else { 0 });
         for cell in cells.chunks_exact_mut(stride) {
             let (bins, shares) = line.place(cell);

@@ -14,8 +14,9 @@ use std::f32::consts::PI;
 use pulp::{Arch, NullaryFnOnce};
 use rayon::prelude::*;
 
+use super::lines::PARTS;
 use super::reflect;
-use super::tiles::{Cell, StoredRow, Tiles};
+use super::tiles::{Cell, CellRow, Tiles};
 use crate::simd::{LANES, Row};
 use crate::table::extent::MOST_DIMS;
 
@@ -41,7 +42,7 @@ struct Mode {
 /// odd modes are but noise.
 fn degrees(dims: usize) -> [usize; 2] {
     match dims {
-        1..=4 => [3, 10],
+        1..=4 => [5, 10],
         5..=8 => [2, 6],
         9..=16 => [2, 4],
         _ => [1, 2],
@@ -73,9 +74,6 @@ pub(super) struct ModeBuffers {
     /// By place in time.
     means: Vec<Row>,
 }
-
-/// Parts of a table that are added up apart, whatever the number of threads.
-const PARTS: usize = 8;
 
 impl Modes {
     pub(super) fn new(dims: &[usize]) -> Self {
@@ -269,7 +267,7 @@ impl NullaryFnOnce for Sum<'_> {
 struct Silence<'a> {
     modes: &'a Modes,
     means: &'a [Row],
-    row: StoredRow<'a>,
+    row: CellRow<'a>,
 }
 
 impl NullaryFnOnce for Silence<'_> {
@@ -277,7 +275,7 @@ impl NullaryFnOnce for Silence<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { modes, means, row: StoredRow { dims, cells, stride, .. } } = self;
+        let Self { modes, means, row: CellRow { dims, cells, stride, .. } } = self;
         let (mut motions, mut waves) = ([[0.0; LANES]; MOST_DIMS], [SILENCE; MOST_WAVES]);
         for cell in cells.chunks_exact_mut(stride) {
             motions[..dims].fill([0.0; LANES]);

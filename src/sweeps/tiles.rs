@@ -42,8 +42,8 @@ pub(super) struct Tiles {
 #[repr(align(64))]
 pub(super) struct Cell(pub Row);
 
-/// A row of vectors with its margins.
-pub(super) struct StoredRow<'a> {
+/// A row of cells.
+pub(super) struct CellRow<'a> {
     /// Place in time.
     pub time: usize,
     /// The frames of all lanes.
@@ -244,15 +244,50 @@ impl Tiles {
         self.frames[self.axes[0].place(self.row_start(row).cell[0], 0)]
     }
 
-    /// Visits all rows with their margins. What moves samples by their values alone moves their copies just
-    /// so.
-    pub(super) fn for_each_row(&mut self, visit: impl Fn(StoredRow) + Sync) {
+    /// Visits all rows of cells, and renews their copies.
+    pub(super) fn for_each_row(&mut self, visit: impl Fn(CellRow) + Sync) {
         let (dims, stride, frames) = (self.dims, self.planes(), &self.frames);
         let [times, ys, xs] = self.axes.each_ref().map(Axis::stored);
+        let [own_times, own_ys, own_xs] = self.axes.each_ref().map(Axis::own_places);
         let rows = self.values.par_chunks_exact_mut(xs * stride).enumerate().with_min_len(ROWS_PER_TASK);
         rows.for_each(|(row, cells)| {
-            let time = row / ys % times;
-            visit(StoredRow { time, frames: frames[time], dims, cells, stride });
+            let (time, y) = (row / ys % times, row % ys);
+            if own_times.contains(&time) && own_ys.contains(&y) {
+                let cells = &mut cells[own_xs.start * stride..own_xs.end * stride];
+                visit(CellRow { time, frames: frames[time], dims, cells, stride });
+            }
+        });
+        self.renew();
+    }
+
+    /// Brings all copies up to date.
+    fn renew(&mut self) {
+        let (dims, stride) = (self.dims, self.planes());
+        let Self { axes, copies, values, .. } = self;
+        let [time_axis, y_axis, x_axis] = &*axes;
+        // Frames by themselves where none has a copy.
+        let apart = time_axis.stored() == 1 || time_axis.tiles() == 1;
+        let times = if apart { 1 } else { time_axis.stored() };
+        let (ys, xs) = (y_axis.stored(), x_axis.stored());
+        let row_at = |time: usize, y: usize| (time * ys + y) * xs * stride;
+        values.par_chunks_exact_mut(times * ys * xs * stride).enumerate().for_each(|(index, values)| {
+            let cells = if apart { 0..1 } else { 0..time_axis.cells() };
+            for time in cells {
+                let of_time = if apart { &copies[0][index % time_axis.stored()] } else { &copies[0][time] };
+                for (y, of_y) in copies[1].iter().enumerate() {
+                    for (x, of_x) in copies[2].iter().enumerate() {
+                        let time = if apart { 0 } else { time_axis.place(time, 0) };
+                        let own = row_at(time, y_axis.place(y, 0)) + x_axis.place(x, 0) * stride;
+                        for dim in 0..dims {
+                            let Cell(moved) = values[own + dim];
+                            let at = |time: usize, y: usize, x: usize| {
+                                row_at(if apart { 0 } else { time }, y) + x * stride + dim
+                            };
+                            spread(values, [of_time, of_y, of_x], at, &moved);
+                        }
+                    }
+                }
+            }
         });
     }
 
@@ -298,18 +333,30 @@ impl Tiles {
                 Domain::Torus => domain.admit(moved[lane] + motion[lane]),
             };
         }
-        let [times, ys, xs] = std::array::from_fn(|k| self.copies[k][run.cell[k]].as_slice());
+        let [times, ys, xs] = self.axes.each_ref().map(Axis::stored);
         let stride = self.planes();
-        for time in times {
-            for y in ys {
-                let row = self.row_at(run.sample, time.place, y.place) + dim;
-                for x in xs {
-                    let Cell(copy) = &mut self.values[row + x.place * stride];
-                    for (lane, copy) in copy.iter_mut().enumerate() {
-                        let from = usize::from(time.of[lane] + y.of[lane] + x.of[lane]);
-                        if from < LANES {
-                            *copy = moved[from];
-                        }
+        let of = std::array::from_fn(|k| self.copies[k][run.cell[k]].as_slice());
+        let at = |time, y, x| (((run.sample * times + time) * ys + y) * xs + x) * stride + dim;
+        spread(&mut self.values, of, at, &moved);
+    }
+}
+
+/// Writes a vector to all places where some tile stores its samples.
+#[inline(always)]
+fn spread(
+    values: &mut [Cell],
+    [times, ys, xs]: [&[Copies]; 3],
+    at: impl Fn(usize, usize, usize) -> usize,
+    moved: &Row,
+) {
+    for time in times {
+        for y in ys {
+            for x in xs {
+                let Cell(copy) = &mut values[at(time.place, y.place, x.place)];
+                for (lane, copy) in copy.iter_mut().enumerate() {
+                    let from = usize::from(time.of[lane] + y.of[lane] + x.of[lane]);
+                    if from < LANES {
+                        *copy = moved[from];
                     }
                 }
             }
@@ -318,4 +365,4 @@ impl Tiles {
 }
 
 /// Rows that are worth handing to a thread.
-const ROWS_PER_TASK: usize = 8;
+const ROWS_PER_TASK: usize = 16;

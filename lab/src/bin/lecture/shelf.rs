@@ -4,10 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::time::Instant;
 
-use fsot::classes::FilterForm;
-use fsot::config::{DimensionGroup, Term, Work};
 use fsot::kernel::{SpatialKernel, TemporalKernel};
-use fsot::{Config, Extent, Kernel, Optimizer, SampleTable, Until};
+use fsot::{Config, Extent, Kernel, SampleTable, Until};
 use fsot_lab::samplers::{DitherMask, Fast, ScramblingKeys, Stbn, stratified};
 
 use crate::scale::Scale;
@@ -99,11 +97,7 @@ impl Shelf {
     pub fn make(&mut self, recipe: Recipe) -> Result<(), Failure> {
         let Recipe { maker, dims, spp, frames } = recipe;
         let Scale { tile, effort, .. } = self.scale;
-        // Ours repeat a quarter of the tile where it would be long in the making; the kernels are far
-        // smaller.
-        let long = matches!(maker, Maker::Ours | Maker::OursTaa) && frames > 1 && spp > 1;
-        let side = if long { tile / 2 } else { tile };
-        let extent = Extent { frames, height: side, width: side, spp };
+        let extent = Extent { frames, height: tile, width: tile, spp };
         let seed = self.seed;
         let begin = Instant::now();
         let sweeps = |sweeps: u64| (sweeps as f64 * effort).ceil() as u64;
@@ -132,11 +126,9 @@ impl Shelf {
                 table.cooling.sweeps = sweeps(if frames > 1 { 150 } else { 2000 });
                 table.table()?
             }
-            Maker::Ours => ours(Config::new(extent, dims).with_seed(seed), tile, effort)?,
+            Maker::Ours => ours(Config::new(extent, dims).with_seed(seed), effort)?,
             Maker::OursTaa => {
-                let groups = DimensionGroup::pairs_and_whole(dims);
-                let terms = Term::blue_noise(&[for_taa()], FilterForm::LevelSets, &groups, &extent);
-                ours(Config::new(extent, dims).with_seed(seed).with_terms(terms), tile, effort)?
+                ours(Config::new(extent, dims).with_seed(seed).with_kernel(for_taa()), effort)?
             }
         };
         self.seconds.push((recipe, begin.elapsed().as_secs_f64()));
@@ -155,17 +147,10 @@ impl Shelf {
     }
 }
 
-/// Our tables, with the optimiser's defaults: slices, then sweeps, and about as much of each for every shape.
-/// Slices take time in proportion to the samples of a pixel, sweeps to their square.
-fn ours(config: Config, tile: usize, effort: f64) -> Result<SampleTable, Failure> {
-    let Extent { frames, height, width, spp } = config.extent;
-    let room = (tile * tile) as f64 / (height * width) as f64;
-    let [slices, sweeps] = if frames > 1 { [300.0, 150.0] } else { [6000.0, 2000.0] };
-    let slices_per_class = (slices * effort * room / spp as f64).ceil() as u64;
-    let sweeps = (sweeps * effort * room / (spp * spp) as f64).ceil() as u64;
-    let mut optimizer = Optimizer::new(config)?;
-    optimizer.run(Until::Work(Work { slices_per_class, sweeps, ..Work::default() }))?;
-    Ok(optimizer.into_table())
+/// Our tables, with the optimiser's defaults and the work that is usually worth it.
+fn ours(config: Config, effort: f64) -> Result<SampleTable, Failure> {
+    let until = if effort < 1.0 { Until::Sweeps(2) } else { Until::Usual };
+    Ok(config.optimize(until)?)
 }
 
 /// The eye's spatial filter times the history of temporal antialiasing.
