@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::classes::{Classes, FilterForm};
 use crate::error::RangeError;
-use crate::kernel::{Kernel, TemporalKernel};
+use crate::kernel::{Kernel, SpatialKernel, TemporalKernel};
 use crate::simd::LANES;
 use crate::table::extent::{Extent, MOST_DIMS};
 use crate::targets::Target;
@@ -150,13 +150,14 @@ impl Term {
     }
 
     /// The smaller filters that go with these kernels, each with a small weight, so that what a scene does
-    /// within a kernel, or what is seen without one, finds good samples too: where a pixel has several
-    /// samples, these by themselves and together with their nearest neighbours (the Gaussian with `sigma_px =
-    /// 1`), and in an animation the single frames, as the spatial half of a kernel sees them.
+    /// within a kernel, or what is seen without one, finds good samples too. In space they are the pixel by
+    /// itself and its nearest neighbours (the Gaussian with `sigma_px = 1`), in time the single frame, and
+    /// both together; all of them where a pixel has several samples, else those that hold several frames, and
+    /// the frames.
     ///
     /// Weights make the squared errors of all filters comparable: of what a kernel pulls on a sample from its
-    /// own place, the pixel's own samples do a quarter, their neighbours a fifth, and frames three tenths. A
-    /// kernel that is refused has none.
+    /// own place, the pixel does a quarter, its neighbours a fifth, and the frame three tenths. A kernel that
+    /// is refused has none.
     pub fn companions(
         kernels: &[Kernel],
         form: FilterForm,
@@ -164,33 +165,25 @@ impl Term {
         extent: &Extent,
     ) -> Vec<Self> {
         let mut terms: Vec<Self> = Vec::new();
-        let mut add = |classes: Classes, weight: f64| {
-            if kernels.iter().any(|kernel| classes == Classes::Lattice { kernel: kernel.clone(), form }) {
-                return;
+        for (kernel, companion, share) in kernels.iter().flat_map(smaller) {
+            let [own, of_companion] = [kernel, &companion].map(|kernel| concentration(kernel, extent));
+            let (Some(own), Some(of_companion)) = (own, of_companion) else { continue };
+            let is_frame = companion.temporal == TemporalKernel::None && companion.spatial != kernel.spatial;
+            let holds_enough = extent.spp > 1 || extent.frames > 1 && !is_frame;
+            if of_companion <= own || of_companion == 1.0 && extent.spp == 1 || !holds_enough {
+                continue;
             }
+            let classes = match of_companion {
+                1.0 => Classes::PerPixel,
+                _ => Classes::Lattice { kernel: companion, form },
+            };
+            let weight = share * own / of_companion / kernels.len() as f64;
             for group in groups {
                 let term = Self::uniform(&classes, Role::Descend, group, weight);
                 match terms.iter_mut().find(|other| (&other.classes, &other.dims) == (&classes, &group.dims))
                 {
                     Some(other) => other.weight += term.weight,
                     None => terms.push(term),
-                }
-            }
-        };
-        for kernel in kernels {
-            let Some(own) = concentration(kernel, extent) else { continue };
-            let share = own / kernels.len() as f64;
-            if extent.spp > 1 {
-                add(Classes::PerPixel, PIXEL * share);
-                let near = Kernel::gaussian(1.0);
-                if let Some(of_near) = concentration(&near, extent).filter(|&of_near| of_near > own) {
-                    add(Classes::Lattice { kernel: near, form }, NEAR * share / of_near);
-                }
-            }
-            if extent.frames > 1 {
-                let still = Kernel { temporal: TemporalKernel::None, ..kernel.clone() };
-                if let Some(of_still) = concentration(&still, extent).filter(|&of_still| of_still < 1.0) {
-                    add(Classes::Lattice { kernel: still, form }, STILL * share / of_still);
                 }
             }
         }
@@ -208,11 +201,22 @@ impl Term {
     }
 }
 
-/// What a companion pulls on a sample from its own place, as share of what the kernel does: the pixel's own
-/// samples, the nearest neighbours, the frame.
+/// A kernel's companions, and what they pull on a sample from its own place as share of what the kernel does.
+fn smaller(kernel: &Kernel) -> impl Iterator<Item = (&Kernel, Kernel, f64)> {
+    let [near, pixel] = [SpatialKernel::Gaussian { sigma_px: 1.0 }, SpatialKernel::Box { size_px: 1 }];
+    let in_space = [(kernel.spatial.clone(), 1.0), (near, NEAR), (pixel, PIXEL)];
+    in_space.into_iter().flat_map(move |(spatial, share)| {
+        let in_time = [(kernel.temporal.clone(), 1.0), (TemporalKernel::None, FRAME)];
+        in_time.map(|(temporal, of_time)| {
+            let companion = Kernel { spatial: spatial.clone(), temporal, ..kernel.clone() };
+            (kernel, companion, share * of_time)
+        })
+    })
+}
+
 const PIXEL: f64 = 0.25;
 const NEAR: f64 = 0.2;
-const STILL: f64 = 0.3;
+const FRAME: f64 = 0.3;
 
 /// `Σw² / (Σw)²`: the squared error that a kernel leaves of white noise.
 fn concentration(kernel: &Kernel, extent: &Extent) -> Option<f64> {

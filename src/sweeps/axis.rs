@@ -111,3 +111,66 @@ impl Axis {
         copies
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Length, window, tiles, margin.
+    const CASES: [(usize, (usize, usize), usize, usize); 8] = [
+        (64, (0, 64), 4, 6),
+        (50, (0, 50), 4, 6),
+        (3, (0, 3), 4, 1),
+        (1, (0, 1), 16, 0),
+        (10, (0, 10), 1, 0),
+        (17, (0, 17), 2, 8),
+        // Over the end.
+        (20, (14, 27), 4, 5),
+        (20, (3, 4), 1, 7),
+    ];
+
+    fn axes() -> impl Iterator<Item = (Axis, usize, Range<usize>, usize)> {
+        CASES.into_iter().map(|(len, (from, to), tiles, margin)| {
+            (Axis::new(len, from..to, tiles, margin), len, from..to, margin)
+        })
+    }
+
+    #[test]
+    fn every_site_of_the_window_has_one_owner() {
+        for (axis, len, window, _) in axes() {
+            let mut owned = vec![0; len];
+            for (tile, cell) in
+                (0..axis.tiles()).flat_map(|tile| (0..axis.cells()).map(move |cell| (tile, cell)))
+            {
+                if axis.owns(tile, cell) {
+                    let site = axis.site(tile, axis.place(cell, 0));
+                    assert_eq!(axis.owner(site), Some([tile, cell]));
+                    owned[site] += 1;
+                }
+            }
+            let expected =
+                (0..len).map(|site| usize::from(window.contains(&site) || window.contains(&(site + len))));
+            assert!(owned.into_iter().eq(expected), "{axis:?}");
+        }
+    }
+
+    #[test]
+    fn neighbours_are_as_far_away_in_every_tile() {
+        for (axis, len, _, margin) in axes() {
+            let reach = if margin == 0 { len as i32 / 2 } else { margin as i32 };
+            for (tile, cell) in
+                (0..axis.tiles()).flat_map(|tile| (0..axis.cells()).map(move |cell| (tile, cell)))
+            {
+                for offset in (-reach..=reach).filter(|_| margin > 0 || axis.tiles() == 1) {
+                    let own = axis.site(tile, axis.place(cell, 0)) as i32;
+                    let site = axis.site(tile, axis.place(cell, offset)) as i32;
+                    assert_eq!(
+                        site,
+                        (own + offset).rem_euclid(len as i32),
+                        "{axis:?} {tile} {cell} {offset}"
+                    );
+                }
+            }
+        }
+    }
+}

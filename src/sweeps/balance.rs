@@ -112,3 +112,7 @@ const SAMPLES_PER_BIN: usize = 8;
 const FEWEST_BINS: usize = 4;
 /// and as the samples of a bin are still moved alike.
 const MOST_BINS: usize = 1024;
+
+#[cfg(test)]
+#[path = "balance_tests.rs"]
+mod tests;

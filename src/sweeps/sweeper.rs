@@ -63,6 +63,10 @@ impl Sweeper {
     /// # Errors
     /// A descended term without a closed form.
     pub(crate) fn new(objective: &Objective, sweeps: &Sweeps) -> Result<Self, ConfigError> {
+        Self::with_arch(objective, sweeps, Arch::new())
+    }
+
+    pub(super) fn with_arch(objective: &Objective, sweeps: &Sweeps, arch: Arch) -> Result<Self, ConfigError> {
         super::check(objective)?;
         let (extent, dims) = (objective.extent, objective.dims);
         // Terms of the same dimensions share a pass over the pairs.
@@ -94,7 +98,7 @@ impl Sweeper {
         let is_wanted = |&index: &u32| tiles.run(index as usize).lanes().next().is_some();
         let order = (0..tiles.runs() as u32).filter(is_wanted).collect();
         Ok(Self {
-            arch: Arch::new(),
+            arch,
             terms,
             factors,
             tiles,
@@ -192,6 +196,12 @@ impl Sweeper {
     /// Gives coordinates that are balanced one by one the values of a regular grid, by rank.
     pub(crate) fn settle(&self, points: &mut [f32], samples: &[u32]) {
         self.balance.settle(points, self.dims, samples);
+    }
+
+    #[cfg(test)]
+    pub(super) fn balance_once(&mut self, turn: u64) {
+        self.balance.advance(self.arch, &mut self.tiles, turn, 1.0);
+        self.ahead = true;
     }
 
     /// The pulls of a step that was just taken, by coordinate.

@@ -366,3 +366,7 @@ fn spread(
 
 /// Rows that are worth handing to a thread.
 const ROWS_PER_TASK: usize = 16;
+
+#[cfg(test)]
+#[path = "tiles_tests.rs"]
+mod tests;

@@ -127,9 +127,7 @@ impl Shelf {
                 table.table()?
             }
             Maker::Ours => ours(Config::new(extent, dims).with_seed(seed), effort)?,
-            Maker::OursTaa => {
-                ours(Config::new(extent, dims).with_seed(seed).with_kernel(for_taa()), effort)?
-            }
+            Maker::OursTaa => ours(Config::new(extent, dims).with_seed(seed).with_kernel(for_taa()), effort)?,
         };
         self.seconds.push((recipe, begin.elapsed().as_secs_f64()));
         self.tables.insert(recipe, table);
