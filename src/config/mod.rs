@@ -263,7 +263,9 @@ mod tests {
         let other = config().with_form(FilterForm::Weighted).with_groups(&groups).with_kernels(&kernels);
         assert_eq!(one, other);
         assert_eq!((one.kernels(), one.groups()), (kernels.to_vec(), groups.to_vec()));
-        let terms = Term::blue_noise(&kernels, FilterForm::Weighted, &groups, &one.extent);
+        let mut terms = Term::blue_noise(&kernels, FilterForm::Weighted, &groups, &one.extent);
+        assert_eq!(one.clone().with_companions(false).terms, terms);
+        terms.extend(Term::companions(&kernels, FilterForm::Weighted, &groups, &one.extent));
         assert_eq!(one.terms, terms);
     }
 

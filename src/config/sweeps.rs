@@ -13,9 +13,9 @@ use crate::error::RangeError;
 /// r^d n = 1` in the unit cube of `d` dimensions, and the curvature there is one sample's share of the
 /// gradient, per `r`.
 ///
-/// A step moves a sixteenth of the neighbours together; what they do to each other's pull grows with their
-/// number. Rates beyond `16 / (n r)` don't settle, and are taken as that: in two dimensions 5 at one sample
-/// per pixel of a still picture, 1.3 at sixteen; in four dimensions 2 and 0.25.
+/// A step moves a sixteenth of the neighbours together, or less where there are many (one in `4 n r`, at the
+/// least one in 64); what they do to each other's pull grows with their number. Rates beyond half a step's
+/// inverse share over `n r` don't settle, and are taken as that: 2.7 in a still picture of two dimensions.
 ///
 /// ```
 /// use fsot::config::{Schedule, Sweeps};

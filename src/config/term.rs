@@ -168,9 +168,7 @@ impl Term {
         for (kernel, companion, share) in kernels.iter().flat_map(smaller) {
             let [own, of_companion] = [kernel, &companion].map(|kernel| concentration(kernel, extent));
             let (Some(own), Some(of_companion)) = (own, of_companion) else { continue };
-            let is_frame = companion.temporal == TemporalKernel::None && companion.spatial != kernel.spatial;
-            let holds_enough = extent.spp > 1 || extent.frames > 1 && !is_frame;
-            if of_companion <= own || of_companion == 1.0 && extent.spp == 1 || !holds_enough {
+            if of_companion <= own || of_companion == 1.0 && extent.spp == 1 {
                 continue;
             }
             let classes = match of_companion {

@@ -7,8 +7,8 @@ use crate::config::{Role, Until, Work};
 use crate::error::{ConfigError, RangeError};
 use crate::sweeps::{self, Motion};
 
-/// Pairs of samples that usual sweeps look at: about a second of a core.
-const USUAL_PAIRS: f64 = 4.3e9;
+/// Pairs of samples that usual sweeps look at: some ten seconds of a core.
+const USUAL_PAIRS: f64 = 5e10;
 const FEWEST_SWEEPS: f64 = 3.0;
 /// Slices per class that usually are enough for what has no closed form.
 const USUAL_SLICES: u64 = 320;

@@ -99,6 +99,6 @@ mod tests {
         assert_eq!(frame.kernels(), [Kernel::gaussian(2.1)]);
         // A pixel by itself over time says nothing of a frame.
         let alone = Kernel::separate(Kernel::gaussian(2.1).spatial, TemporalKernel::Ema { alpha: 0.2 });
-        assert!(config.with_kernel(alone[1].clone()).of_a_frame().is_none());
+        assert!(config.with_companions(false).with_kernel(alone[1].clone()).of_a_frame().is_none());
     }
 }

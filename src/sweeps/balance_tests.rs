@@ -64,7 +64,7 @@ fn modes_bring_a_cube_in_order() {
             let least = point.iter().copied().fold(1.0, f32::min);
             point[..3].fill(least);
         }
-        balanced(&config, &mut points, 8);
+        balanced(&config, &mut points, 16);
         let mean = |of: &dyn Fn(&[f32]) -> f64| {
             points.chunks_exact(dims).map(of).sum::<f64>() / extent.samples() as f64
         };

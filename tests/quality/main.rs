@@ -3,6 +3,7 @@
 
 mod bias;
 mod bound;
+mod promises;
 mod refusals;
 mod runs;
 mod sweeps;

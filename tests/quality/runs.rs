@@ -1,8 +1,10 @@
 //! How runs end, and tables of unusual shape.
 
+use std::ops::ControlFlow;
 use std::time::Duration;
 
-use fsot::config::EndReason;
+use fsot::config::{EndReason, Work};
+use fsot::optimizer::StepReport;
 use fsot::{Config, ConfigError, Optimizer, SampleTable, Until};
 
 use crate::{extent, on, optimized, ratio};
@@ -153,4 +155,63 @@ fn one_sample_goes_to_the_middle() {
     for value in table.values() {
         assert!((value - 0.5).abs() < 1e-2, "{:?}", table.values());
     }
+}
+
+/// Until one says otherwise an animation begins with one frame, displaced.
+#[test]
+fn animations_begin_with_a_frame() {
+    let config = Config::new(extent([4, 8, 8, 1]), 2);
+    let work = Work { frame_sweeps: 3, ..Work::default() };
+    let table = config.clone().optimize(Until::Work(work)).unwrap();
+    let frame: Vec<&[f32]> = table.values().chunks_exact(8 * 8 * 2).collect();
+    let sorted = |frame: &[f32]| {
+        let mut values: Vec<[u32; 2]> =
+            frame.chunks_exact(2).map(|point| [point[0].to_bits(), point[1].to_bits()]).collect();
+        values.sort_unstable();
+        values
+    };
+    assert!(frame[1..].iter().all(|other| sorted(other) == sorted(frame[0]) && *other != frame[0]));
+
+    let mut optimizer = Optimizer::new(config.clone()).unwrap();
+    let (mut steps, mut seen) = (Vec::new(), Vec::new());
+    let report = optimizer
+        .run_observed(Until::Sweeps(2), |step| {
+            assert!(step.loss().is_finite() && step.table().shape() == [4, 8, 8, 1, 2]);
+            steps.push(step.step);
+            seen.push(step.steps);
+            ControlFlow::Continue(())
+        })
+        .unwrap();
+    assert!(report.work.frame_sweeps > 0 && report.work.sweeps == 2);
+    assert!(steps.iter().copied().eq(1..=report.steps) && seen.iter().all(|&all| all == report.steps));
+    // The same work again, and a run that goes on instead of beginning anew.
+    assert_eq!(config.optimize(Until::Work(report.work)).unwrap(), optimizer.table());
+    assert_eq!(optimizer.run(Until::Sweeps(2)).unwrap().work.frame_sweeps, 0);
+}
+
+#[test]
+fn a_run_that_ends_in_its_first_frame_keeps_a_whole_table() {
+    let mut optimizer = Optimizer::new(Config::new(extent([4, 8, 8, 1]), 2)).unwrap();
+    let stop =
+        |step: &StepReport| if step.step == 2 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+    let report = optimizer.run_observed(Until::Sweeps(5), stop).unwrap();
+    assert_eq!((report.ended, report.steps), (EndReason::Stopped, 2));
+    let table = optimizer.table();
+    assert_eq!(table.shape(), [4, 8, 8, 1, 2]);
+    assert!(table.values()[..128] != table.values()[128..256]);
+}
+
+#[test]
+fn the_usual_work_is_that_of_the_shape() {
+    let work = |shape, dims| {
+        let mut optimizer = Optimizer::new(Config::new(extent(shape), dims)).unwrap();
+        let stop = |_: &StepReport| ControlFlow::Break(());
+        optimizer.run_observed(Until::Usual, stop).unwrap().work
+    };
+    assert_eq!(work([1, 16, 16, 1], 2).sweeps, 1000);
+    assert_eq!(work([1, 16, 16, 1], 1).sweeps, 10_000);
+    assert_eq!(work([2, 16, 16, 16], 2).frame_sweeps.min(1), 1);
+    let torus = Config::new(extent([1, 8, 8, 1]), 2).with_domain(fsot::config::Domain::Torus);
+    let report = Optimizer::new(torus).unwrap().run(Until::Usual).unwrap();
+    assert_eq!((report.work.slices_per_class, report.work.sweeps), (320, 0));
 }
