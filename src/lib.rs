@@ -37,6 +37,7 @@
 //!
 //! | [`Until`] | for |
 //! |---|---|
+//! | [`Usual`](Until::Usual) | a good table, the same on every machine |
 //! | [`Seconds`](Until::Seconds) | the best table in a given time; [`RunReport::work`] makes it again |
 //! | [`Sweeps`](Until::Sweeps) | tables on intervals: soonest at any error; 20 to 100 make a good one |
 //! | [`SlicesPerClass`](Until::SlicesPerClass) | point sets, toruses, and whatever has no closed form |
@@ -64,17 +65,18 @@
 //!   bit, and a run amplifies that; tables then differ, their quality doesn't.
 //! * Values lie in `[0, 1)`; 1.0 never appears.
 //! * Steps allocate nothing once their buffers have grown; memory stays below nine times the table (ten with
-//!   SGD, eleven with Adam), plus a few MiB per thread. (Sweeps of tiles narrower than 16 pixels take up to
-//!   16 times the table instead: their rows are filled up.) A target other than the cube is tabulated once,
-//!   in up to 17 MiB.
+//!   SGD, eleven with Adam), plus a few MiB per thread. (Sweeps work on a copy that has
+//!   margins as wide as filters reach: 1.2 times a table of 512×512 pixels, 3 times one of 64×64, 9 times one
+//!   of 24×24, where that is little.) A target other than the cube is tabulated once, in up to 17 MiB.
 //! * Bad input is refused with a typed error ([`ConfigError`], [`TableError`], [`MeasureError`]) before
 //!   anything is computed or written. The library prints nothing.
 //!
 //! # Limits
 //!
 //! It is no renderer, no denoiser, no GPU library, and no source of random numbers for anything that needs
-//! statistical independence between pixels. Samples keep away from the faces of the cube by about a
-//! hundredth, and a bias that is small beside one sample's does not fall with the size of the table.
+//! statistical independence between pixels. A finished run of sweeps is even in every coordinate
+//! up to the faces of the cube; one of slices alone, as on a torus or for targets of one's own, holds some
+//! tenths fewer samples within a hundredth of a face.
 //!
 //! [`ClassFamily`]: classes::ClassFamily
 //! [`Classes`]: classes::Classes

@@ -21,9 +21,9 @@
 //! directions has a closed form, the energy distance: see [`Objective::cramer`]. It is the squared filtered
 //! error of random half-spaces, and its exact gradient needs no sorting and no random numbers. A *sweep*
 //! ([`Optimizer::sweep`]) moves every sample along it once. Sweeps are the sooner at any filtered error;
-//! slices reach the lower bound, and hold where there is no closed form (on a torus). [`Until::Seconds`]
-//! chooses: sweeps alone if time is short, slices and then sweeps if there is more, slices alone where sweeps
-//! are impossible.
+//! slices reach the lower bound, and hold where there is no closed form (on a torus). [`Until::Usual`] and
+//! [`Until::Seconds`] choose sweeps, after those of a single frame in an animation, and slices where sweeps are
+//! impossible.
 //!
 //! | symbol | here | shape, unit |
 //! |---|---|---|
@@ -41,8 +41,10 @@
 //! * A sample moves towards the exact *mean of its quantile cell*, not towards a random point of the target:
 //!   the gradient has no noise but that of the slices.
 //! * Tables are *unbiased* by default. The published objective pulls samples to the middle of the square,
-//!   since a filter often holds a single one; a few slices of the whole table and of whole frames after each
-//!   step ([`Role::Balance`]) remove this.
+//!   since a filter often holds a single one; a balance of the whole table, of whole frames and of single
+//!   coordinates after each step or sweep ([`Role::Balance`]) removes this.
+//! * Smaller filters accompany a kernel with small weights ([`Term::companions`]), since a scene changes within
+//!   a filter, and is seen without it.
 //! * Levels reach the true maximum of the filter, also where a temporal kernel peaks in the past.
 //! * Domains end like intervals by default, since integrands do; [`Domain::Torus`] per dimension on request.
 //!
@@ -60,7 +62,9 @@
 //! [`Slice::direction`]: crate::objective::Slice::direction
 //! [`Slice::level`]: crate::objective::Slice::level
 //! [`Target`]: crate::targets::Target
+//! [`Term::companions`]: crate::config::Term::companions
 //! [`Term`]: crate::config::Term
+//! [`Until::Usual`]: crate::Until::Usual
 //! [`Until::Seconds`]: crate::Until::Seconds
 //! [`metrics::Bound`]: crate::metrics::Bound
 //!

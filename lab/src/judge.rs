@@ -25,9 +25,10 @@ pub struct Judge {
 }
 
 impl Judge {
-    /// Judges two-dimensional tables of this extent by the objective of [`Config::new`].
+    /// Judges two-dimensional tables of this extent by the default kernel, without companions: by the objective
+    /// of the papers.
     pub fn new(extent: Extent, integrands: usize, slices: usize) -> Result<Self, MeasureError> {
-        let config = Config::new(extent, 2);
+        let config = Config::new(extent, 2).with_companions(false);
         Ok(Self {
             kernel: config.kernels().remove(0),
             objective: Objective::new(&config)?,

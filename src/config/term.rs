@@ -55,7 +55,7 @@ pub enum Role {
     Descend,
     /// After each step of the descent, samples move all the way to where the slices of the term wanted them
     /// before it (times [`crate::Config::balance`]): alternating projections rather than a compromise of
-    /// weights. Meant for few slices of large classes, whose small but systematic displacements a compromise
+    /// weights. Sweeps do without slices where the whole table or its frames should resemble the cube. Meant for few slices of large classes, whose small but systematic displacements a compromise
     /// would drown.
     Balance,
 }
@@ -152,8 +152,7 @@ impl Term {
     /// The smaller filters that go with these kernels, each with a small weight, so that what a scene does
     /// within a kernel, or what is seen without one, finds good samples too. In space they are the pixel by
     /// itself and its nearest neighbours (the Gaussian with `sigma_px = 1`), in time the single frame, and
-    /// both together; all of them where a pixel has several samples, else those that hold several frames, and
-    /// the frames.
+    /// both together; but for those that would hold one sample alone.
     ///
     /// Weights make the squared errors of all filters comparable: of what a kernel pulls on a sample from its
     /// own place, the pixel does a quarter, its neighbours a fifth, and the frame three tenths. A kernel that

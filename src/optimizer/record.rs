@@ -20,7 +20,10 @@ impl Optimizer {
     /// ```
     pub fn metadata(&self, report: &RunReport) -> Metadata {
         let configuration = serde_json::to_value(&self.config).expect("a configuration is plain data");
-        let taps = |term| Some(KernelTaps { term, taps: self.objective.taps(term)?.to_vec() });
+        let taps = |term| {
+            let taps = self.objective.taps(term).filter(|taps| taps.len() <= MOST_TAPS)?;
+            Some(KernelTaps { term, taps: taps.to_vec() })
+        };
         Metadata {
             kernels: (0..self.objective.terms.len()).filter_map(taps).collect(),
             run: report.into(),
@@ -28,6 +31,9 @@ impl Optimizer {
         }
     }
 }
+
+/// Longer lists would make metadata larger than their tables.
+const MOST_TAPS: usize = 128;
 
 impl From<&RunReport> for RunRecord {
     fn from(report: &RunReport) -> Self {

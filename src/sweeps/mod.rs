@@ -13,7 +13,7 @@
 //!
 //! It is the squared filtered error of a random half-space, meant over half-spaces and pixels. A sweep visits
 //! every sample once and moves it along its exact gradient; that costs one pass over the pairs that some
-//! filter holds together, in long runs of neighbouring pixels and without any search.
+//! filter holds together, sixteen at a time and without any search.
 
 mod axis;
 mod balance;

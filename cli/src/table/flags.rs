@@ -63,14 +63,14 @@ pub struct Arguments {
     /// Slices drawn per pixel and frame [default: 320 with --domain torus or --optimizer, else 0].
     #[arg(long, conflicts_with = "seconds")]
     slices_per_class: Option<u64>,
-    /// Sweeps over all samples, after the slices; not with --domain torus [default: about a second's work of a
+    /// Sweeps over all samples, after the slices; not with --domain torus [default: some seconds' work of a
     /// core, from 3 to 1000, or to 10000 for scalars; 0 with --slices-per-class above 0, --domain torus or
     /// --optimizer].
     #[arg(long, conflicts_with = "seconds")]
     sweeps: Option<u64>,
-    /// Sweeps of the frame that an animation begins with [default: as many as take a fifth of the time; 0
-    /// with --slices-per-class].
-    #[arg(long, conflicts_with = "seconds")]
+    /// Sweeps of the frame that an animation begins with, of which --sweeps is the rest [default: as many as
+    /// take a fifth of the time; 0 with --slices-per-class].
+    #[arg(long, conflicts_with = "seconds", requires = "sweeps")]
     frame_sweeps: Option<u64>,
     /// Time for the optimisation alone, instead of an amount of work.
     #[arg(long)]
@@ -113,7 +113,7 @@ impl Arguments {
         let slices_only = self.optimizer.is_some() || matches!(self.domain, DomainName::Torus);
         let slices = if slices_only { Some(320) } else { None };
         match (self.slices_per_class.or(slices), self.sweeps, self.frame_sweeps) {
-            (None, None, None) => Until::Usual,
+            (None | Some(0), None, _) => Until::Usual,
             (None, Some(sweeps), None) => Until::Sweeps(sweeps),
             (slices, sweeps, frame_sweeps) => Until::Work(Work {
                 frame_sweeps: frame_sweeps.unwrap_or(0),

@@ -20,7 +20,7 @@ pub fn rows(cases: &[Case], variants: Vec<Variant>) -> Result<Vec<Row>, Failure>
 fn measure(case: &Case, variant: &Variant) -> Result<Outcome, Failure> {
     let judge = Judge::new(case.extent, case.integrands, case.bound_slices)?;
     let outcomes = (0..case.seeds).map(|seed| -> Result<Outcome, Failure> {
-        let default = Config::new(case.extent, 2).with_seed(seed);
+        let default = Config::new(case.extent, 2).with_companions(false).with_seed(seed);
         let mut config = default.clone();
         (variant.change)(&mut config);
         let slices_per_class = match variant.effort {

@@ -88,7 +88,7 @@ fn optimise(
     targets: Targets,
     draws: Draws,
 ) -> Result<SampleTable, Failure> {
-    let mut config = Config::new(extent, 2).with_seed(seed);
+    let mut config = Config::new(extent, 2).with_companions(false).with_seed(seed);
     config.terms.retain(|term| term.dims.len() == 2);
     let objective = Objective::new(&config)?;
     let mut points: Vec<f64> =

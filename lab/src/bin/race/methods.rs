@@ -30,7 +30,7 @@ pub const METHODS: &[Method] = &[
     Method { name: "barycentric", run: |config, effort| slices(Descent::barycentric(), config, effort) },
     Method { name: "SGD", run: |config, effort| slices(Descent::sgd(), config, effort) },
     Method { name: "Adam", run: |config, effort| slices(Descent::adam(), config, effort) },
-    Method { name: "sweeps", run: |config, effort| work(config, 0, effort.sweeps) },
+    Method { name: "sweeps", run: |config, effort| made(config, Until::Sweeps(effort.sweeps)) },
     Method {
         name: "slices, then sweeps",
         run: |config, Effort { sweeps, .. }| work(config, 2 * sweeps, sweeps),
@@ -42,7 +42,11 @@ fn slices(descent: Descent, config: &Config, effort: Effort) -> Result<Made, Con
 }
 
 fn work(config: &Config, slices_per_class: u64, sweeps: u64) -> Result<Made, ConfigError> {
+    made(config, Until::Work(Work { slices_per_class, sweeps, ..Work::default() }))
+}
+
+fn made(config: &Config, until: Until) -> Result<Made, ConfigError> {
     let mut optimizer = Optimizer::new(config.clone())?;
-    let report = optimizer.run(Until::Work(Work { slices_per_class, sweeps, ..Work::default() }))?;
+    let report = optimizer.run(until)?;
     Ok(Made { table: optimizer.into_table(), seconds: report.elapsed.as_secs_f64(), slices: report.slices })
 }
