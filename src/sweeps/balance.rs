@@ -38,10 +38,11 @@ struct Part {
     modes: Option<Modes>,
 }
 
-/// Samples from which on one line a sweep is too little. What it leaves falls less than the noise of as many
-/// random samples does: 512×512 after 60 sweeps has a bias of 1.7 with one line a sweep, and of 0.13 with
-/// four.
-const LARGE: usize = 1 << 16;
+/// Turns per sweep, and lines of a part per turn, from so many samples on. What a line leaves falls less with
+/// their number than the noise of as many random samples does: 512×512 after 60 sweeps has a bias of 1.7 with
+/// one line a sweep, and of 0.13 with four.
+const EFFORT: [(usize, (usize, u64)); 4] =
+    [(1 << 18, (2, 4)), (1 << 16, (2, 2)), (1 << 14, (1, 2)), (0, (1, 1))];
 
 impl Balance {
     pub(super) fn new(objective: &Objective) -> Self {
@@ -57,8 +58,8 @@ impl Balance {
         // What comes later stays as it is: frames give way to the whole, and all to single coordinates.
         parts.sort_by_key(|part| (!part.per_frame, std::cmp::Reverse(part.dims.len())));
         parts.dedup_by(|a, b| (&a.dims, a.per_frame) == (&b.dims, b.per_frame));
-        let large = samples >= LARGE;
-        let (turns, lines) = if large { (2, 2) } else { (1, 1) };
+        let effort = EFFORT.iter().find(|&&(least, _)| samples >= least);
+        let (turns, lines) = effort.map_or((1, 1), |&(_, effort)| effort);
         let (line_buffers, mode_buffers) = (LineBuffers::default(), ModeBuffers::default());
         Self { parts, line_buffers, mode_buffers, turns, lines }
     }
