@@ -155,7 +155,7 @@ impl Term {
     /// both together; but for those that would hold one sample alone.
     ///
     /// Weights make the squared errors of all filters comparable: of what a kernel pulls on a sample from its
-    /// own place, the pixel does a quarter, its neighbours a fifth, and the frame three tenths. A kernel that
+    /// own place, the pixel does a quarter, its neighbours a fifth, and the frame three fifths. A kernel that
     /// is refused has none.
     pub fn companions(
         kernels: &[Kernel],
@@ -213,7 +213,7 @@ fn smaller(kernel: &Kernel) -> impl Iterator<Item = (&Kernel, Kernel, f64)> {
 
 const PIXEL: f64 = 0.25;
 const NEAR: f64 = 0.2;
-const FRAME: f64 = 0.3;
+const FRAME: f64 = 0.6;
 
 /// `Σw² / (Σw)²`: the squared error that a kernel leaves of white noise.
 fn concentration(kernel: &Kernel, extent: &Extent) -> Option<f64> {

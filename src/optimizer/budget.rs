@@ -104,18 +104,22 @@ impl Optimizer {
     /// Times a few steps of sweeps that leave the table as it is.
     fn seconds_per_sweep(&mut self) -> Result<f64, ConfigError> {
         let (fresh, swept) = (self.fresh, self.swept);
-        let steps = self.sweeper()?.steps();
-        let mut outcome = Ok(());
+        let sweeper = self.sweeper()?;
+        let (steps, turns) = (sweeper.steps(), sweeper.turns());
         let still = Motion { rate: 0.0, softening: 0.0, balance: 0.0 };
         // The first step makes the copy and does not count.
         self.sweep_step(0, still)?;
-        let mut step = 0;
-        let seconds = mean_seconds(|| {
-            step = (step + 1) % steps;
+        let (mut step, mut outcome) = (0, Ok(()));
+        let per_step = mean_seconds(|| {
+            // Without those that a balance follows.
+            step = (step + 1) % (steps / turns - 1);
             outcome = self.sweep_step(step, still).map(|_| ());
         });
+        outcome?;
+        let sweeper = self.sweeper()?;
+        let per_turn = mean_seconds(|| sweeper.balance(0, 0.0));
         (self.fresh, self.swept, self.sweeper) = (fresh, swept, None);
-        outcome.map(|()| steps as f64 * seconds)
+        Ok(steps as f64 * per_step + turns as f64 * per_turn)
     }
 }
 

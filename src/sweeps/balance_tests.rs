@@ -14,7 +14,7 @@ fn balanced(config: &Config, points: &mut [f32], turns: u64) {
     let objective = Objective::new(config).unwrap();
     let mut sweeper = Sweeper::new(&objective, &Sweeps::default()).unwrap();
     sweeper.load(points);
-    (0..turns).for_each(|turn| sweeper.balance_once(turn));
+    (0..turns).for_each(|turn| sweeper.balance(turn, 1.0));
     sweeper.write_to(points);
 }
 
@@ -88,7 +88,7 @@ fn what_nobody_demands_does_not_count() {
     points.chunks_exact_mut(2).step_by(3).for_each(|point| point.fill(0.01));
     let mut sweeper = Sweeper::new(&objective, &Sweeps::default()).unwrap();
     sweeper.load(&points);
-    (0..16).for_each(|turn| sweeper.balance_once(turn));
+    (0..16).for_each(|turn| sweeper.balance(turn, 1.0));
     sweeper.write_to(&mut points);
     let of = |wanted: bool| points.chunks_exact(2).zip(&pixels).filter(move |(_, flag)| **flag == wanted);
     assert!(of(false).all(|(point, _)| point == [0.01; 2]));
@@ -130,7 +130,7 @@ fn instruction_sets_and_threads_agree() {
             let mut sweeper = Sweeper::with_arch(&objective, &Sweeps::default(), arch).unwrap();
             let mut points = crooked(config.extent, 5);
             sweeper.load(&points);
-            (0..3).for_each(|turn| sweeper.balance_once(turn));
+            (0..3).for_each(|turn| sweeper.balance(turn, 1.0));
             sweeper.write_to(&mut points);
             points
         })

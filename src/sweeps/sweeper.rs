@@ -188,20 +188,25 @@ impl Sweeper {
         let turns = self.balance.turns();
         if (step + 1).is_multiple_of(self.steps / turns) {
             let turn = self.sweep * turns as u64 + (step / (self.steps / turns)) as u64;
-            self.balance.advance(self.arch, &mut self.tiles, turn, how.balance);
+            self.balance(turn, how.balance);
         }
         all
+    }
+
+    /// Turns of the balance in a sweep.
+    pub(crate) fn turns(&self) -> usize {
+        self.balance.turns()
+    }
+
+    /// Takes one turn of the balance, `share` of the way.
+    pub(crate) fn balance(&mut self, turn: u64, share: f64) {
+        self.balance.advance(self.arch, &mut self.tiles, turn, share);
+        self.ahead = true;
     }
 
     /// Gives coordinates that are balanced one by one the values of a regular grid, by rank.
     pub(crate) fn settle(&self, points: &mut [f32], samples: &[u32]) {
         self.balance.settle(points, self.dims, samples);
-    }
-
-    #[cfg(test)]
-    pub(super) fn balance_once(&mut self, turn: u64) {
-        self.balance.advance(self.arch, &mut self.tiles, turn, 1.0);
-        self.ahead = true;
     }
 
     /// The pulls of a step that was just taken, by coordinate.
