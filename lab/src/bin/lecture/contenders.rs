@@ -102,7 +102,8 @@ impl<'a> Rendering<'a> {
     /// A table, elsewhere in every realisation.
     fn table(&self, maker: Maker, dims: usize, spp: u32, frames: usize) -> Result<TableSampler<'a>, Failure> {
         let table = self.shelf.table(Recipe { maker, dims, spp: spp as usize, frames })?;
-        Ok(TableSampler::new(table).shifted(displacement(self.repeat, self.tile())))
+        // Past the displacements of frames, pairs and samples: else one realisation is another a frame later.
+        Ok(TableSampler::new(table).shifted(displacement(1000 * self.repeat, self.tile())))
     }
 
     fn tile(&self) -> [usize; 2] {
