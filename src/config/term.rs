@@ -152,7 +152,8 @@ impl Term {
     /// The smaller filters that go with these kernels, each with a small weight, so that what a scene does
     /// within a kernel, or what is seen without one, finds good samples too. In space they are the pixel by
     /// itself and its nearest neighbours (the Gaussian with `sigma_px = 1`), in time the single frame, and
-    /// both together; but for those that would hold one sample alone.
+    /// both together; but for those that would hold one sample alone. Where two coincide, as the single frame and
+    /// all of time do in a still, their weights add up.
     ///
     /// Weights make the squared errors of all filters comparable: of what a kernel pulls on a sample from its
     /// own place, the pixel does a quarter, its neighbours a fifth, and the frame three fifths. A kernel that
