@@ -22,8 +22,8 @@
 //! error of random half-spaces, and its exact gradient needs no sorting and no random numbers. A *sweep*
 //! ([`Optimizer::sweep`]) moves every sample along it once. Sweeps are the sooner at any filtered error;
 //! slices reach the lower bound, and hold where there is no closed form (on a torus). [`Until::Usual`] and
-//! [`Until::Seconds`] choose sweeps, after those of a single frame in an animation, and slices where sweeps are
-//! impossible.
+//! [`Until::Seconds`] choose sweeps, after those of a single frame in an animation, and slices where sweeps
+//! are impossible.
 //!
 //! | symbol | here | shape, unit |
 //! |---|---|---|
@@ -43,8 +43,8 @@
 //! * Tables are *unbiased* by default. The published objective pulls samples to the middle of the square,
 //!   since a filter often holds a single one; a balance of the whole table, of whole frames and of single
 //!   coordinates after each step or sweep ([`Role::Balance`]) removes this.
-//! * Smaller filters accompany a kernel with small weights ([`Term::companions`]), since a scene changes within
-//!   a filter, and is seen without it.
+//! * Smaller filters accompany a kernel with small weights ([`Term::companions`]), since a scene changes
+//!   within a filter, and is seen without it.
 //! * Levels reach the true maximum of the filter, also where a temporal kernel peaks in the past.
 //! * Domains end like intervals by default, since integrands do; [`Domain::Torus`] per dimension on request.
 //!

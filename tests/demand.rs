@@ -124,3 +124,28 @@ fn demands_that_cannot_be_met_are_named() {
     let missing = ConfigError::DemandGroup { group: 1, problem };
     assert_eq!(refused(true, vec![vec![0], vec![1, 2]]), missing);
 }
+
+/// Some frames of an animation, also across its end: the others keep their bits, and these get better.
+#[test]
+fn frames_are_swept_by_themselves() {
+    let extent = Extent::animation(16, 16, 16);
+    for wanted in [0..1, 3..5, 14..19] {
+        let is_wanted = |site: usize| wanted.contains(&(site / 256)) || wanted.contains(&(site / 256 + 16));
+        let pixels: Vec<bool> = (0..extent.sites()).map(is_wanted).collect();
+        let demand = Demand::new([16, 16, 16], pixels.clone(), vec![vec![0, 1]]).unwrap();
+        let config = Config::new(extent, 2);
+        let before = SampleTable::white_noise(extent, 2, config.seed).unwrap();
+        let mut optimizer = Optimizer::for_demand(config, &demand).unwrap();
+        let value = |optimizer: &Optimizer| {
+            let points: Vec<f64> = optimizer.points().iter().map(|&value| value.into()).collect();
+            optimizer.objective().cramer(&points).unwrap().value
+        };
+        let start = value(&optimizer);
+        optimizer.run(Until::Sweeps(10)).unwrap();
+        assert!(value(&optimizer) < 0.3 * start, "{wanted:?}");
+        let after = optimizer.into_table();
+        for (index, (old, new)) in before.values().iter().zip(after.values()).enumerate() {
+            assert!(pixels[index / 2] || old == new, "{wanted:?} {index}");
+        }
+    }
+}

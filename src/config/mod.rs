@@ -233,9 +233,9 @@ impl Config {
 
     /// Kernels and forms of the terms that have them. Companions come after the balance of what they go with.
     fn filters(&self) -> impl Iterator<Item = (&Kernel, FilterForm, &Term)> {
-        let is_usual = |term: &&Term| !self.companions || term.role == Role::Descend;
-        let own = self.terms.iter().take_while(move |term| is_usual(term));
-        own.filter_map(|term| match &term.classes {
+        let balances = self.terms.iter().rposition(|term| term.role == Role::Balance);
+        let own = balances.filter(|_| self.companions).unwrap_or(self.terms.len());
+        self.terms[..own].iter().filter_map(|term| match &term.classes {
             Classes::Lattice { kernel, form } => Some((kernel, *form, term)),
             _ => None,
         })

@@ -19,10 +19,11 @@ const MOST_SLICES: usize = i32::MAX as usize;
 /// use fsot::config::Role;
 /// use fsot::{Config, Extent};
 ///
-/// // The default: a lattice of filters that is descended; the whole table and both coordinates are balanced.
+/// // The default: a lattice of filters that is descended; the whole table and both coordinates, balanced; and
+/// // a smaller filter.
 /// let config = Config::new(Extent::still(64, 64), 2);
 /// let roles: Vec<Role> = config.terms.iter().map(|term| term.role).collect();
-/// assert_eq!(roles, [Role::Descend, Role::Balance, Role::Balance, Role::Balance]);
+/// assert_eq!(roles, [Role::Descend, Role::Balance, Role::Balance, Role::Balance, Role::Descend]);
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Term {
@@ -55,8 +56,8 @@ pub enum Role {
     Descend,
     /// After each step of the descent, samples move all the way to where the slices of the term wanted them
     /// before it (times [`crate::Config::balance`]): alternating projections rather than a compromise of
-    /// weights. Sweeps do without slices where the whole table or its frames should resemble the cube. Meant for few slices of large classes, whose small but systematic displacements a compromise
-    /// would drown.
+    /// weights. Sweeps do without slices where the whole table or its frames should resemble the cube. Meant
+    /// for few slices of large classes, whose small but systematic displacements a compromise would drown.
     Balance,
 }
 
@@ -152,11 +153,10 @@ impl Term {
     /// The smaller filters that go with these kernels, each with a small weight, so that what a scene does
     /// within a kernel, or what is seen without one, finds good samples too. In space they are the pixel by
     /// itself and its nearest neighbours (the Gaussian with `sigma_px = 1`), in time the single frame, and
-    /// both together; but for those that would hold one sample alone. Where two coincide, as the single frame and
-    /// all of time do in a still, their weights add up.
+    /// both together; but for those that would hold one sample alone.
     ///
     /// Weights make the squared errors of all filters comparable: of what a kernel pulls on a sample from its
-    /// own place, the pixel does a quarter, its neighbours a fifth, and the frame three fifths. A kernel that
+    /// own place, the pixel and its neighbours do a quarter each, and the frame three fifths. A kernel that
     /// is refused has none.
     pub fn companions(
         kernels: &[Kernel],
@@ -203,17 +203,20 @@ impl Term {
 fn smaller(kernel: &Kernel) -> impl Iterator<Item = (&Kernel, Kernel, f64)> {
     let [near, pixel] = [SpatialKernel::Gaussian { sigma_px: 1.0 }, SpatialKernel::Box { size_px: 1 }];
     let in_space = [(kernel.spatial.clone(), 1.0), (near, NEAR), (pixel, PIXEL)];
+    let mut in_time = vec![(kernel.temporal.clone(), 1.0)];
+    if kernel.temporal != TemporalKernel::None {
+        in_time.push((TemporalKernel::None, FRAME));
+    }
     in_space.into_iter().flat_map(move |(spatial, share)| {
-        let in_time = [(kernel.temporal.clone(), 1.0), (TemporalKernel::None, FRAME)];
-        in_time.map(|(temporal, of_time)| {
-            let companion = Kernel { spatial: spatial.clone(), temporal, ..kernel.clone() };
-            (kernel, companion, share * of_time)
-        })
+        let with = move |(temporal, of_time): (TemporalKernel, f64)| {
+            (kernel, Kernel { spatial: spatial.clone(), temporal, ..kernel.clone() }, share * of_time)
+        };
+        in_time.clone().into_iter().map(with)
     })
 }
 
 const PIXEL: f64 = 0.25;
-const NEAR: f64 = 0.2;
+const NEAR: f64 = 0.25;
 const FRAME: f64 = 0.6;
 
 /// `Σw² / (Σw)²`: the squared error that a kernel leaves of white noise.

@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Until {
-    /// After as much work as is usually worth it: sweeps for some seconds of one core, 1,000 at most
+    /// After as much work as is usually worth it: sweeps for some ten seconds of a core, 1,000 at most
     /// (10,000 where all groups are single dimensions, which take many and take them fast) and 3 at least,
     /// with a frame to begin with as in [`Until::Sweeps`]; 320 slices per pixel and frame, or per class,
     /// where an objective has no closed form. The same work on every machine.

@@ -61,8 +61,8 @@ pub struct Metadata {
     pub seed: u64,
     /// The whole configuration of the optimiser.
     pub configuration: serde_json::Value,
-    /// Weights of the pixel and frame filters, one entry per term of the objective that has a kernel of at most
-    /// 128 taps; longer ones follow from the configuration.
+    /// Weights of the pixel and frame filters, one entry per term of the objective that has a kernel of at
+    /// most 128 taps; longer ones follow from the configuration.
     pub kernels: Vec<KernelTaps>,
     /// The error bound before and after, if it was measured.
     pub bound: Option<BoundRecord>,

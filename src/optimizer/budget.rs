@@ -118,8 +118,12 @@ impl Optimizer {
         outcome?;
         let sweeper = self.sweeper()?;
         let per_turn = mean_seconds(|| sweeper.balance(0, 0.0));
+        let per_slices = match self.objective.has_balances_beside_sweeps() {
+            true => mean_seconds(|| self.balance_by_slices(0, 0.0)),
+            false => 0.0,
+        };
         (self.fresh, self.swept, self.sweeper) = (fresh, swept, None);
-        Ok(steps as f64 * per_step + turns as f64 * per_turn)
+        Ok(steps as f64 * per_step + turns as f64 * per_turn + per_slices)
     }
 }
 

@@ -13,12 +13,16 @@ use crate::table::extent::{Extent, Site};
 /// and a pixel a sequence of low discrepancy.
 const R2: [f64; 2] = [0.569_840_290_998_053_3, 0.754_877_666_246_692_8];
 
+/// In smaller frames there are too few displacements: frames would be the same.
+const FEWEST_PIXELS: usize = 16;
+
 impl Optimizer {
     /// An optimiser for one frame of this animation; `None` if it is none, if a part of it is not demanded,
     /// or if its terms say nothing of a single frame.
     pub(super) fn of_a_frame(&self) -> Result<Option<Optimizer>, ConfigError> {
         let is_swept_whole = !self.objective.wanted.is_partial() && sweeps::check(&self.objective).is_ok();
-        if self.config.extent.frames == 1 || !is_swept_whole {
+        let Extent { frames, height, width, .. } = self.config.extent;
+        if frames == 1 || height * width < FEWEST_PIXELS || !is_swept_whole {
             return Ok(None);
         }
         self.config.of_a_frame().map(Optimizer::new).transpose()
@@ -44,7 +48,10 @@ impl Config {
                 Classes::PerFrame => continue,
                 _ => return None,
             }
-            if !terms.iter().any(|other| (&other.classes, &other.dims) == (&term.classes, &term.dims)) {
+            let is_same = |other: &Term| {
+                (&other.classes, &other.dims, other.role) == (&term.classes, &term.dims, term.role)
+            };
+            if !terms.iter().any(is_same) {
                 terms.push(term);
             }
         }

@@ -226,9 +226,15 @@ impl Optimizer {
         self.fresh = false;
         if is_last && self.objective.has_balances_beside_sweeps() {
             self.fetch();
-            self.advance(self.swept, &[Picked::Each(Role::Balance)], 0.0, motion.balance);
+            self.balance_by_slices(self.swept, motion.balance);
         }
         Ok(pulls)
+    }
+
+    /// Moves the samples `share` of the way along one slice of every class that sweeps do not balance by
+    /// themselves.
+    fn balance_by_slices(&mut self, turn: u64, share: f64) {
+        self.advance(turn, &[Picked::Each(Role::Balance)], 0.0, share);
     }
 
     /// Brings the samples from the sweeps' copy.
@@ -238,14 +244,14 @@ impl Optimizer {
         }
     }
 
-    /// Makes marginals exact that sweeps have brought close.
-    fn settle(&mut self) {
+    /// Brings marginals `share` of the way to exact ones, which sweeps have come close to.
+    fn settle(&mut self, share: f64) {
         self.fetch();
         let Self { sweeper: Some(sweeper), objective, points, config, .. } = self else { return };
         let spp = config.extent.spp;
         let is_wanted = |&sample: &u32| objective.wanted.site(sample as usize / spp);
         let samples: Vec<u32> = (0..config.extent.samples() as u32).filter(is_wanted).collect();
-        sweeper.settle(points, &samples);
+        sweeper.settle(points, &samples, share);
         sweeper.outdate();
     }
 }

@@ -34,7 +34,8 @@ pub struct SliceStep {
     pub slices: u64,
 }
 
-/// What a run tells its caller after each step: a batch of slices, or a sixteenth of a sweep.
+/// What a run tells its caller after each step: a batch of slices, a part of a sweep, from a sixteenth to a
+/// 64th, or a whole sweep of the frame that an animation begins with.
 ///
 /// Its fields cost nothing; [`StepReport::table`] and [`StepReport::loss`] are computed when they are asked
 /// for.

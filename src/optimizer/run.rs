@@ -50,6 +50,7 @@ impl Optimizer {
         let Work { frame_sweeps, slices_per_class, sweeps } = work;
         let frame = if frame_sweeps > 0 { self.of_a_frame()? } else { None };
         let frame_sweeps = if frame.is_some() { frame_sweeps } else { 0 };
+        let work = Work { frame_sweeps, ..work };
         let per_step = self.objective.slices_per_class_and_step();
         let batches = (slices_per_class as f64 / per_step).ceil() as u64;
         let steps_per_sweep = if sweeps > 0 { self.sweeper()?.steps() } else { 1 };
@@ -82,7 +83,7 @@ impl Optimizer {
             self.points = displaced(self.config.extent, frame.points());
             self.fresh = false;
         }
-        let rest = if report.ended == EndReason::Finished { batches + swept } else { 0 };
+        let rest = if report.ended == EndReason::Finished { batches.saturating_add(swept) } else { 0 };
         for step in 0..rest {
             let (displacement, rate) = if step < batches {
                 let progress = step as f64 / batches as f64;
@@ -124,7 +125,7 @@ impl Optimizer {
             }
         }
         if sweeps > 0 && report.ended == EndReason::Finished {
-            self.settle();
+            self.settle(self.config.balance.at(1.0));
         }
         // A run may be broken off between two balances.
         self.fetch();

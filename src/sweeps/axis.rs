@@ -94,17 +94,15 @@ impl Axis {
     /// The copies of every cell, its own place first. `tile` tells that of a lane, and the next lane along
     /// the axis is `stride` lanes away.
     pub(super) fn copies(&self, tile: impl Fn(usize) -> usize, stride: usize) -> Vec<Vec<Copies>> {
-        let mut copies = vec![Vec::new(); self.cells];
+        let mut copies: Vec<Vec<Copies>> = vec![Vec::new(); self.cells];
         for place in (self.margin..self.stored()).chain(0..self.margin) {
-            let owners: Vec<_> = (0..LANES).map(|lane| self.owner(self.site(tile(lane), place))).collect();
-            for (cell, copies) in copies.iter_mut().enumerate() {
-                let part = |owner: &Option<[usize; 2]>| match owner {
-                    Some([tile, at]) if *at == cell => (tile * stride) as u8,
-                    _ => NO_LANE,
-                };
-                let of: [u8; LANES] = std::array::from_fn(|lane| part(&owners[lane]));
-                if of != [NO_LANE; LANES] {
-                    copies.push(Copies { place, of });
+            for lane in 0..LANES {
+                let Some([tile, cell]) = self.owner(self.site(tile(lane), place)) else { continue };
+                if copies[cell].last().is_none_or(|last| last.place != place) {
+                    copies[cell].push(Copies { place, of: [NO_LANE; LANES] });
+                }
+                if let Some(last) = copies[cell].last_mut() {
+                    last.of[lane] = (tile * stride) as u8;
                 }
             }
         }

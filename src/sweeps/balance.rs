@@ -56,7 +56,9 @@ impl Balance {
         };
         let mut parts: Vec<Part> = terms.map(part).collect();
         // What comes later stays as it is: frames give way to the whole, and all to single coordinates.
-        parts.sort_by_key(|part| (!part.per_frame, std::cmp::Reverse(part.dims.len())));
+        parts.sort_by(|a, b| {
+            (!a.per_frame, b.dims.len(), &a.dims).cmp(&(!b.per_frame, a.dims.len(), &b.dims))
+        });
         parts.dedup_by(|a, b| (&a.dims, a.per_frame) == (&b.dims, b.per_frame));
         let effort = EFFORT.iter().find(|&&(least, _)| samples >= least);
         let (turns, lines) = effort.map_or((1, 1), |&(_, effort)| effort);
@@ -90,10 +92,10 @@ impl Balance {
         }
     }
 
-    /// Gives coordinates of which a single one is balanced over the whole table the values `(rank + ½) / n`:
+    /// Brings coordinates of which a single one is balanced over the whole table `share` of the way to `(rank + ½) / n`:
     /// then their marginals are exact up to the faces, and no value is 0. `samples` are those that are
     /// demanded.
-    pub(super) fn settle(&self, points: &mut [f32], dims: usize, samples: &[u32]) {
+    pub(super) fn settle(&self, points: &mut [f32], dims: usize, samples: &[u32], share: f64) {
         let mut ranks: Vec<(f32, u32)> = Vec::with_capacity(samples.len());
         for part in self.parts.iter().filter(|part| part.dims.len() == 1 && !part.per_frame) {
             let dim = part.dims[0];
@@ -101,8 +103,10 @@ impl Balance {
             ranks.extend(samples.iter().map(|&sample| (points[sample as usize * dims + dim], sample)));
             ranks.par_sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             let cell = 1.0 / ranks.len() as f64;
-            for (rank, &(_, sample)) in ranks.iter().enumerate() {
-                points[sample as usize * dims + dim] = (((rank as f64 + 0.5) * cell) as f32).min(BELOW_ONE);
+            for (rank, &(value, sample)) in ranks.iter().enumerate() {
+                let value = f64::from(value);
+                let settled = value + share * ((rank as f64 + 0.5) * cell - value);
+                points[sample as usize * dims + dim] = (settled as f32).clamp(0.0, BELOW_ONE);
             }
         }
     }

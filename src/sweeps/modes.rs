@@ -64,6 +64,12 @@ const MOST_WAVES: usize = 192;
 
 const SILENCE: Wave = Wave { cos: [1.0; LANES], sin: [0.0; LANES] };
 
+/// More than any number of dimensions has.
+const MOST_MODES: usize = 384;
+
+/// Parts times frames that are added up apart.
+const MOST_SUMS: usize = 512;
+
 /// Buffers that stay.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ModeBuffers {
@@ -71,8 +77,8 @@ pub(super) struct ModeBuffers {
     sums: Vec<Row>,
     /// By part and frame.
     totals: Vec<f64>,
-    /// By place in time.
-    means: Vec<Row>,
+    /// By frame.
+    means: Vec<f32>,
 }
 
 impl Modes {
@@ -115,10 +121,12 @@ impl Modes {
         let of = |frame: usize| if per_frame { frame * len } else { 0 };
         sums.resize(PARTS * len, [0.0; LANES]);
         totals.clear();
-        totals.resize(PARTS * frames * len, 0.0);
+        // Sums of all frames in every part would be as large as the table where frames are many and small.
+        let count = PARTS.min((MOST_SUMS / frames).max(1));
+        totals.resize(count * frames * len, 0.0);
         let parts = totals.par_chunks_exact_mut(frames * len).zip(sums.par_chunks_exact_mut(len)).enumerate();
         parts.for_each(|(part, (totals, sums))| {
-            for row in rows.len() * part / PARTS..rows.len() * (part + 1) / PARTS {
+            for row in rows.len() * part / count..rows.len() * (part + 1) / count {
                 arch.dispatch(Sum { modes: self, tiles, row, sums });
                 for (lane, frame) in tiles.frames_of_row(row).into_iter().enumerate() {
                     let totals = totals[of(frame)..].iter_mut().zip(&*sums);
@@ -131,18 +139,11 @@ impl Modes {
             totals.iter_mut().zip(other).for_each(|(total, other)| *total += other);
         }
         means.clear();
-        for time in 0..tiles.times() {
-            means.extend((0..self.modes.len()).map(|mode| {
-                tiles.frames_at(time).map(|frame| {
-                    let of_frame = &totals[of(frame)..][..len];
-                    (share * of_frame[mode] / of_frame[len - 1].max(1.0)) as f32
-                })
-            }));
+        for totals in totals.chunks_exact(len) {
+            let (count, totals) = totals.split_last().unwrap_or((&0.0, &[]));
+            means.extend(totals.iter().map(|total| (share * total / count.max(1.0)) as f32));
         }
-        tiles.for_each_row(|row| {
-            let means = &means[row.time * self.modes.len()..][..self.modes.len()];
-            arch.dispatch(Silence { modes: self, means, row });
-        });
+        tiles.for_each_row(|row| arch.dispatch(Silence { modes: self, means, per_frame, row }));
     }
 
     /// Adds every mode's values at the samples of a vector, whose coordinates are given, times `counts`, and
@@ -266,7 +267,8 @@ impl NullaryFnOnce for Sum<'_> {
 /// What silences the modes, over a row of vectors.
 struct Silence<'a> {
     modes: &'a Modes,
-    means: &'a [Row],
+    means: &'a [f32],
+    per_frame: bool,
     row: CellRow<'a>,
 }
 
@@ -275,11 +277,16 @@ impl NullaryFnOnce for Silence<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { modes, means, row: CellRow { dims, cells, stride, .. } } = self;
+        let Self { modes, means, per_frame, row: CellRow { frames, dims, cells, stride } } = self;
+        let len = modes.modes.len();
+        let mut of_lanes = [[0.0; LANES]; MOST_MODES];
+        for (mode, of_lanes) in of_lanes[..len].iter_mut().enumerate() {
+            *of_lanes = frames.map(|frame| means[if per_frame { frame * len } else { 0 } + mode]);
+        }
         let (mut motions, mut waves) = ([[0.0; LANES]; MOST_DIMS], [SILENCE; MOST_WAVES]);
         for cell in cells.chunks_exact_mut(stride) {
             motions[..dims].fill([0.0; LANES]);
-            modes.silence(|dim| cell[dim].0, means, &mut waves, &mut motions);
+            modes.silence(|dim| cell[dim].0, &of_lanes[..len], &mut waves, &mut motions);
             for (Cell(values), motion) in cell.iter_mut().zip(&motions[..dims]) {
                 for lane in 0..LANES {
                     values[lane] = reflect(values[lane] + motion[lane]);

@@ -163,8 +163,8 @@ impl Sweeper {
         }
     }
 
-    /// Moves the samples of one step of the sweep, and balances the table where a turn of that is due. Returns
-    /// the pulls' mean square. What moves is the copy, until it is stored.
+    /// Moves the samples of one step of the sweep, and balances the table where a turn of that is due.
+    /// Returns the pulls' mean square. What moves is the copy, until it is stored.
     pub(crate) fn step(&mut self, step: usize, how: Motion, domains: &[Domain]) -> MeanSquare {
         let rate = how.rate.min(self.most);
         self.terms.iter_mut().for_each(|pairs| pairs.soften(how.softening * rate));
@@ -204,9 +204,9 @@ impl Sweeper {
         self.ahead = true;
     }
 
-    /// Gives coordinates that are balanced one by one the values of a regular grid, by rank.
-    pub(crate) fn settle(&self, points: &mut [f32], samples: &[u32]) {
-        self.balance.settle(points, self.dims, samples);
+    /// Brings coordinates that are balanced one by one `share` of the way to a regular grid, by rank.
+    pub(crate) fn settle(&self, points: &mut [f32], samples: &[u32], share: f64) {
+        self.balance.settle(points, self.dims, samples, share);
     }
 
     /// The pulls of a step that was just taken, by coordinate.

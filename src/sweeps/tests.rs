@@ -148,6 +148,18 @@ fn sweeps_follow_the_gradient() {
     }
 }
 
+/// The default objective, whose kernel and companions share a pass over the pairs.
+#[test]
+fn companions_are_descended_with_their_kernel() {
+    for (frames, height, width, spp, dims) in [(1, 9, 11, 2, 2), (3, 6, 7, 2, 2), (1, 8, 8, 1, 1)] {
+        let extent = Extent { frames, height, width, spp };
+        let objective = Objective::new(&Config::new(extent, dims)).unwrap();
+        let terms: Vec<_> = objective.terms.iter().filter(|term| term.spec.role == Role::Descend).collect();
+        assert!(terms.len() > 1);
+        assert_pull_is_gradient(&objective, Pairs::new(&terms, extent, 0.0).natural_step());
+    }
+}
+
 /// Runs that end inside a vector, tiles narrower than the kernel or a vector, single rows and frames.
 #[test]
 fn any_shape_is_swept() {

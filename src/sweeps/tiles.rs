@@ -44,8 +44,6 @@ pub(super) struct Cell(pub Row);
 
 /// A row of cells.
 pub(super) struct CellRow<'a> {
-    /// Place in time.
-    pub time: usize,
     /// The frames of all lanes.
     pub frames: [usize; LANES],
     pub dims: usize,
@@ -209,16 +207,6 @@ impl Tiles {
         self.extent.frames
     }
 
-    /// The frames of all lanes at a place in time.
-    pub(super) fn frames_at(&self, time: usize) -> [usize; LANES] {
-        self.frames[time]
-    }
-
-    /// Places in time.
-    pub(super) fn times(&self) -> usize {
-        self.axes[0].stored()
-    }
-
     /// Rows of cells, of all samples.
     pub(super) fn cell_rows(&self) -> Range<usize> {
         0..self.runs() / self.axes[2].cells()
@@ -254,7 +242,7 @@ impl Tiles {
             let (time, y) = (row / ys % times, row % ys);
             if own_times.contains(&time) && own_ys.contains(&y) {
                 let cells = &mut cells[own_xs.start * stride..own_xs.end * stride];
-                visit(CellRow { time, frames: frames[time], dims, cells, stride });
+                visit(CellRow { frames: frames[time], dims, cells, stride });
             }
         });
         self.renew();
@@ -266,7 +254,7 @@ impl Tiles {
         let Self { axes, copies, values, .. } = self;
         let [time_axis, y_axis, x_axis] = &*axes;
         // Frames by themselves where none has a copy.
-        let apart = time_axis.stored() == 1 || time_axis.tiles() == 1;
+        let apart = time_axis.tiles() == 1 && time_axis.stored() == time_axis.cells();
         let times = if apart { 1 } else { time_axis.stored() };
         let (ys, xs) = (y_axis.stored(), x_axis.stored());
         let row_at = |time: usize, y: usize| (time * ys + y) * xs * stride;

@@ -10,16 +10,26 @@ fn taps(extent: &Extent) -> Vec<Tap> {
     autocorrelation(&kernel.taps(extent).unwrap(), extent, 0.007)
 }
 
-/// Shapes that are cut evenly, unevenly, in time, and hardly; demanded whole, and in a part that runs over the
-/// edge.
+/// Shapes that are cut evenly, unevenly, in time, and hardly; demanded whole, and in a part that runs over
+/// the edge.
 fn cases() -> Vec<Tiles> {
     let mut cases = Vec::new();
-    for (frames, height, width, spp) in
-        [(1, 32, 32, 1), (1, 18, 23, 2), (32, 3, 2, 1), (5, 1, 1, 3), (2, 7, 40, 1), (4, 16, 16, 1)]
-    {
+    for (frames, height, width, spp) in [
+        (1, 32, 32, 1),
+        (16, 16, 16, 1),
+        (1, 18, 23, 2),
+        (32, 3, 2, 1),
+        (5, 1, 1, 3),
+        (2, 7, 40, 1),
+        (4, 16, 16, 1),
+    ] {
         let extent = Extent { frames, height, width, spp };
         let flags = (0..extent.sites()).map(|site| site % 5 != 1 && (site % width) * 2 / width.max(2) != 1);
-        for wanted in [Wanted::All, Wanted::Some(flags.collect::<Vec<bool>>().into())] {
+        // Two frames, which lie at both ends where there are more.
+        let frames = (0..extent.sites()).map(|site| (site / (height * width) + 1) % frames < 2);
+        let [flags, frames] =
+            [flags.collect::<Vec<bool>>(), frames.collect()].map(|wanted| Wanted::Some(wanted.into()));
+        for wanted in [Wanted::All, flags, frames] {
             cases.push(Tiles::new(extent, 2, &taps(&extent), &wanted));
         }
     }

@@ -27,7 +27,8 @@ fn a_run_writes_a_table_and_how_it_was_made() {
     let report = optimizer.run(fsot::Until::SlicesPerClass(100)).unwrap();
     assert_eq!((optimizer.table(), report.steps), (table, metadata.run.steps));
     // ∫ exp(-r²/σ²) = π σ² = 13.85; taps below a thousandth are dropped, at most their integral of 0.014.
-    assert_eq!(metadata.kernels.len(), 1);
+    // The kernel, and the neighbours that go with it.
+    assert_eq!(metadata.kernels.len(), 2);
     let sum: f64 = metadata.kernels[0].taps.iter().map(|tap| tap.weight).sum();
     assert!((sum - PI * 2.1 * 2.1).abs() < 0.03, "{sum}");
     let bound = metadata.bound.unwrap();
@@ -68,10 +69,10 @@ fn every_flag_reaches_the_configuration() {
     let kernels = [kernel];
     let mut terms = fsot::config::Term::blue_noise(&kernels, form, &groups, &config.extent);
     assert_eq!(terms.iter().filter(|term| term.role == fsot::config::Role::Descend).count(), 3);
-    // The pixel by itself, its neighbours, the frame.
+    // The pixel by itself, its neighbours and the kernel, in a frame and over time.
     terms.extend(fsot::config::Term::companions(&kernels, form, &groups, &config.extent));
     assert_eq!(config.terms, terms);
-    assert_eq!(metadata.kernels.len(), 3 * 4);
+    assert_eq!(metadata.kernels.len(), 3 * 6);
 }
 
 #[test]
