@@ -25,8 +25,8 @@ pub struct Judge {
 }
 
 impl Judge {
-    /// Judges two-dimensional tables of this extent by the default kernel, without companions: by the objective
-    /// of the papers.
+    /// Judges two-dimensional tables of this extent by the default kernel, without companions: by the
+    /// objective of the papers.
     pub fn new(extent: Extent, integrands: usize, slices: usize) -> Result<Self, MeasureError> {
         let config = Config::new(extent, 2).with_companions(false);
         Ok(Self {

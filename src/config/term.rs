@@ -19,8 +19,8 @@ const MOST_SLICES: usize = i32::MAX as usize;
 /// use fsot::config::Role;
 /// use fsot::{Config, Extent};
 ///
-/// // The default: a lattice of filters that is descended; the whole table and both coordinates, balanced; and
-/// // a smaller filter.
+/// // The default: a lattice of filters that is descended; the whole table and both coordinates, balanced;
+/// // and a smaller filter.
 /// let config = Config::new(Extent::still(64, 64), 2);
 /// let roles: Vec<Role> = config.terms.iter().map(|term| term.role).collect();
 /// assert_eq!(roles, [Role::Descend, Role::Balance, Role::Balance, Role::Balance, Role::Descend]);

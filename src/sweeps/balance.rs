@@ -92,9 +92,9 @@ impl Balance {
         }
     }
 
-    /// Brings coordinates of which a single one is balanced over the whole table `share` of the way to `(rank + ½) / n`:
-    /// then their marginals are exact up to the faces, and no value is 0. `samples` are those that are
-    /// demanded.
+    /// Brings coordinates of which a single one is balanced over the whole table `share` of the way to
+    /// `(rank + ½) / n`: all the way their marginals are exact up to the faces, and no value is 0. `samples`
+    /// are those that are demanded.
     pub(super) fn settle(&self, points: &mut [f32], dims: usize, samples: &[u32], share: f64) {
         let mut ranks: Vec<(f32, u32)> = Vec::with_capacity(samples.len());
         for part in self.parts.iter().filter(|part| part.dims.len() == 1 && !part.per_frame) {

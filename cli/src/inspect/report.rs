@@ -57,7 +57,8 @@ pub fn metadata(out: &mut dyn Write, beside: Option<&Result<Metadata, TableError
         Some(Ok(metadata)) => {
             writeln!(
                 out,
-                "metadata: fsot {}, seed {}, {} sweeps of a frame, {} slices per pixel and {} sweeps in {} steps, {:.2} s",
+                "metadata: fsot {}, seed {}, {} sweeps of a frame, {} slices per pixel and {} sweeps \
+                 in {} steps, {:.2} s",
                 metadata.crate_version,
                 metadata.seed,
                 metadata.run.frame_sweeps,

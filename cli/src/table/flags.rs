@@ -63,8 +63,8 @@ pub struct Arguments {
     /// Slices drawn per pixel and frame [default: 320 with --domain torus or --optimizer, else 0].
     #[arg(long, conflicts_with = "seconds")]
     slices_per_class: Option<u64>,
-    /// Sweeps over all samples, after the slices; not with --domain torus [default: some ten seconds' work of a
-    /// core, from 3 to 1000, or to 10000 for scalars; 0 with --slices-per-class above 0, --domain torus or
+    /// Sweeps over all samples, after the slices; not with --domain torus [default: some ten seconds' work of
+    /// a core, from 3 to 1000, or to 10000 for scalars; 0 with --slices-per-class above 0, --domain torus or
     /// --optimizer].
     #[arg(long, conflicts_with = "seconds")]
     sweeps: Option<u64>,
