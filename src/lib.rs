@@ -65,9 +65,10 @@
 //!   bit, and a run amplifies that; tables then differ, their quality doesn't.
 //! * Values lie in `[0, 1)`; 1.0 never appears.
 //! * Steps allocate nothing once their buffers have grown; memory stays below eleven times the table (twelve
-//!   with SGD, thirteen with Adam; seven in sweeps), plus a few MiB per thread. (Sweeps work on a copy that
-//!   has margins as wide as filters reach, which counts in small tiles: 1.2 times a table of 512×512 pixels, 3
-//!   times one of 64×64, 9 times one of 24×24, 30 times one of 4×4.) A target other than the cube is tabulated once, in up to 17 MiB.
+//!   with SGD, thirteen with Adam; seven in sweeps), plus a few MiB per thread. Sweeps work on a copy that
+//!   has margins as wide as filters reach, which counts in small tiles: 1.2 times a table of 512×512 pixels,
+//!   3 times one of 64×64, 9 times one of 24×24, 30 times one of 4×4. A target other than the cube is
+//!   tabulated once, in up to 17 MiB.
 //! * Bad input is refused with a typed error ([`ConfigError`], [`TableError`], [`MeasureError`]) before
 //!   anything is computed or written. The library prints nothing.
 //!
