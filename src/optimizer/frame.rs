@@ -5,13 +5,9 @@ use crate::classes::Classes;
 use crate::config::{Config, Role, Term};
 use crate::error::ConfigError;
 use crate::kernel::TemporalKernel;
+use crate::random::kronecker_steps;
 use crate::sweeps;
 use crate::table::extent::{Extent, Site};
-
-/// One step of the R2 sequence, down and across, as shares of a side (Roberts 2018, "The unreasonable
-/// effectiveness of quasirandom sequences"): frames far from each other see other parts of the same pattern,
-/// and a pixel a sequence of low discrepancy.
-const R2: [f64; 2] = [0.569_840_290_998_053_3, 0.754_877_666_246_692_8];
 
 /// In smaller frames there are too few displacements: frames would be the same.
 const FEWEST_PIXELS: usize = 16;
@@ -60,13 +56,16 @@ impl Config {
     }
 }
 
-/// A table whose frames are all the same one, displaced by the R2 sequence.
+/// A table whose frames are all the same one, displaced by the R2 sequence (Roberts 2018, "The unreasonable
+/// effectiveness of quasirandom sequences"): frames near each other see parts far from each other of the same
+/// pattern.
 pub(super) fn displaced(extent: Extent, frame: &[f32]) -> Vec<f32> {
     let Extent { frames, height, width, .. } = extent;
     let row = frame.len() / height;
+    let [across, down] = [0, 1].map(|axis| kronecker_steps(2)[axis]);
     let mut points = Vec::with_capacity(frames * frame.len());
     for index in 0..frames {
-        let [dy, dx] = [0, 1].map(|axis| (index as f64 * R2[axis]).fract());
+        let [dy, dx] = [down, across].map(|step| (index as f64 * step).fract());
         let by = Site { frame: 0, y: (dy * height as f64) as usize, x: (dx * width as f64) as usize };
         for y in 0..height {
             let row = &frame[(y + by.y) % height * row..][..row];
