@@ -221,8 +221,8 @@ impl Mode {
 }
 
 impl Wave {
-    /// `cos(π x)` and `sin(π x)` for `x` in `[0, 1]`, by their series at ½, which are good for 4e-6 and 2.6e-5
-    /// at the faces.
+    /// `cos(π x)` and `sin(π x)` for `x` in `[0, 1]`, by their series at ½, which are good for 4e-6 and
+    /// 2.6e-5 at the faces.
     #[inline(always)]
     fn of(at: &Row) -> Self {
         let mut wave = Self { cos: [0.0; LANES], sin: [0.0; LANES] };
