@@ -77,7 +77,7 @@
 //! It is no renderer, no denoiser, no GPU library, and no source of random numbers for anything that needs
 //! statistical independence between pixels. A finished run of sweeps is even in every coordinate
 //! up to the faces of the cube; one of slices alone, as on a torus or for targets of one's own, holds some
-//! tenths fewer samples within a hundredth of a face.
+//! tenths fewer samples within a hundredth of a face, and may hold 0 itself.
 //!
 //! [`ClassFamily`]: classes::ClassFamily
 //! [`Classes`]: classes::Classes
