@@ -65,8 +65,7 @@ impl Filters for Blocks {
     fn select(&self, member: usize, _level: f64, samples: &mut Vec<u32>) {
         samples.clear();
         let spp = self.extent.spp as u32;
-        for site in (member * self.sites..(member + 1) * self.sites).filter(|&site| self.wanted.site(site)) {
-            samples.extend(site as u32 * spp..(site as u32 + 1) * spp);
-        }
+        let block = member * self.sites..(member + 1) * self.sites;
+        self.wanted.for_each(block, |site| samples.extend(site * spp..(site + 1) * spp));
     }
 }

@@ -1,5 +1,6 @@
 //! What a scene will really consume: pixels and frames with any variance, and groups of dimensions.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use crate::error::{ConfigError, ExtentError, GroupError};
@@ -105,20 +106,36 @@ impl Demand {
     }
 }
 
-/// Demanded sites of a table: one flag each, or all of them.
+/// Demanded sites of a table, or all of them.
 #[derive(Clone, Debug)]
 pub(crate) enum Wanted {
     /// Every site.
     All,
-    /// Those with a flag.
-    Some(Arc<[bool]>),
+    /// Some of them.
+    Some(Arc<WantedSites>),
+}
+
+/// Demanded sites, as flags and as a list.
+#[derive(Debug)]
+pub(crate) struct WantedSites {
+    flags: Box<[bool]>,
+    sites: Box<[u32]>,
 }
 
 impl Wanted {
+    /// The sites with a flag.
+    pub(crate) fn new(flags: &[bool]) -> Self {
+        let sites: Box<[u32]> = (0..flags.len() as u32).filter(|&site| flags[site as usize]).collect();
+        match sites.len() == flags.len() {
+            true => Wanted::All,
+            false => Wanted::Some(Arc::new(WantedSites { flags: flags.into(), sites })),
+        }
+    }
+
     pub(crate) fn site(&self, site: usize) -> bool {
         match self {
             Wanted::All => true,
-            Wanted::Some(flags) => flags[site],
+            Wanted::Some(wanted) => wanted.flags[site],
         }
     }
 
@@ -126,22 +143,47 @@ impl Wanted {
         matches!(self, Wanted::Some(_))
     }
 
+    /// One flag a site, unless all are demanded.
+    pub(super) fn flags(&self) -> Option<&[bool]> {
+        match self {
+            Wanted::All => None,
+            Wanted::Some(wanted) => Some(&wanted.flags),
+        }
+    }
+
+    /// Visits the demanded sites of a range, in order.
+    pub(crate) fn for_each(&self, range: Range<usize>, visit: impl FnMut(u32)) {
+        match self {
+            Wanted::All => (range.start as u32..range.end as u32).for_each(visit),
+            Wanted::Some(wanted) => {
+                let sites = &wanted.sites;
+                let before = |end: usize| sites.partition_point(|&site| (site as usize) < end);
+                sites[before(range.start)..before(range.end)].iter().copied().for_each(visit);
+            }
+        }
+    }
+
     /// The classes among `members` that hold a demanded site, unless all sites are; `mark(site, holds)` flags
     /// those that hold the site.
     pub(super) fn holding(&self, members: usize, mark: impl Fn(usize, &mut [bool])) -> Option<Vec<u32>> {
-        let Wanted::Some(flags) = self else { return None };
+        let Wanted::Some(wanted) = self else { return None };
         let mut holds = vec![false; members];
-        (0..flags.len()).filter(|&site| flags[site]).for_each(|site| mark(site, &mut holds));
-        Some((0..members as u32).filter(|&member| holds[member as usize]).collect())
+        wanted.sites.iter().for_each(|&site| mark(site as usize, &mut holds));
+        Some(marked(&holds))
     }
 
     /// Mean size of the visited classes, if it is `mean_size` over all `members` where all is demanded: every
     /// wanted site is held as often as before, but by fewer classes.
     pub(super) fn mean_size(&self, mean_size: f64, members: usize, visited: usize) -> f64 {
-        let Wanted::Some(flags) = self else { return mean_size };
-        let share = flags.iter().filter(|&&flag| flag).count() as f64 / flags.len() as f64;
+        let Wanted::Some(wanted) = self else { return mean_size };
+        let share = wanted.sites.len() as f64 / wanted.flags.len() as f64;
         mean_size * share * members as f64 / visited.max(1) as f64
     }
+}
+
+/// The positions of the flags that are set.
+pub(super) fn marked(flags: &[bool]) -> Vec<u32> {
+    (0..flags.len() as u32).filter(|&index| flags[index as usize]).collect()
 }
 
 #[cfg(test)]

@@ -66,6 +66,11 @@ pub(crate) trait Filters: Debug + Send + Sync {
     /// relative to the largest weight) by falling weight.
     fn select(&self, member: usize, level: f64, samples: &mut Vec<u32>);
 
+    /// Whether it is known, without a look at the samples, that [`Filters::select`] lists none.
+    fn is_empty_at(&self, _member: usize, _level: f64) -> bool {
+        false
+    }
+
     /// Whether samples enter with their weights.
     fn is_weighted(&self) -> bool {
         false

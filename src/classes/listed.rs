@@ -294,7 +294,7 @@ mod tests {
 
     #[test]
     fn what_is_not_demanded_is_left_out() {
-        let flags = Wanted::Some([true, false, false, true, false, false].into());
+        let flags = Wanted::new(&[true, false, false, true, false, false]);
         let listed = Listed::labelled(&[0, 0, 1, 1, 2, 2], &[set(&[0]), set(&[2])], EXTENT, &flags).unwrap();
         assert_eq!(listed.above(0, 0.0), [0]);
         assert_eq!(listed.visited(), Some(vec![0]));

@@ -8,6 +8,7 @@ mod family;
 mod listed;
 mod pixels;
 mod prefixes;
+mod reach;
 
 use std::sync::Arc;
 

@@ -1,8 +1,9 @@
 //! One class per pixel and frame: a kernel centred there.
 
 use super::FilterForm;
-use super::demand::Wanted;
+use super::demand::{Wanted, marked};
 use super::family::Filters;
+use super::reach;
 use crate::kernel::Tap;
 use crate::table::extent::Extent;
 
@@ -16,6 +17,9 @@ pub(super) struct Pixels {
     form: FilterForm,
     extent: Extent,
     wanted: Wanted,
+    /// Where some samples are not demanded, the place among the taps of the first one of each class that is:
+    /// what it is at least, where that is [`reach::FARTHEST`] or more.
+    firsts: Vec<u8>,
     mean_size: f64,
 }
 
@@ -33,21 +37,25 @@ impl Pixels {
                 FilterForm::LevelSets => taps.iter().map(|tap| tap.weight).sum::<f64>(),
             };
         let offsets = taps.iter().map(offset).collect();
-        let mut pixels = Self { taps, offsets, form, extent, wanted, mean_size };
+        let mut pixels = Self { taps, offsets, form, extent, wanted, firsts: Vec::new(), mean_size };
+        if let (FilterForm::LevelSets, Some(flags)) = (form, pixels.wanted.flags()) {
+            pixels.firsts = reach::first_taps(&pixels.taps, &extent, flags);
+        }
         if let Some(visited) = pixels.visited() {
             pixels.mean_size = pixels.wanted.mean_size(pixels.mean_size, pixels.members(), visited.len());
         }
         pixels
     }
 
-    /// Sites under the taps of a class whose weight exceeds `level`, demanded or not, in the order of the
-    /// taps. The weighted form has its whole support at any level.
+    /// Sites under the taps of a class whose weight exceeds `level`, in the order of the taps, but for the
+    /// first ones that are not demanded. The weighted form has its whole support at any level.
     #[inline(always)]
     fn tapped_sites(&self, member: usize, level: f64) -> impl Iterator<Item = u32> {
         let count = match self.form {
             FilterForm::Weighted => self.offsets.len(),
             FilterForm::LevelSets => self.taps.partition_point(|tap| tap.weight > level),
         };
+        let first = self.firsts.get(member).map_or(0, |&first| usize::from(first).min(count));
         let Extent { frames, height, width, .. } = self.extent;
         let [row, frame, all] = [width, width * height, width * height * frames].map(|sites| sites as u32);
         let site = member as u32;
@@ -56,7 +64,7 @@ impl Pixels {
         let wrap = |at: u32, len: u32| at.min(at.wrapping_sub(len));
         let inside =
             move |&[dt, dy, dx]: &[u32; 3]| wrap(t + dt, all) + wrap(y + dy, frame) + wrap(x + dx, row);
-        self.offsets[..count].iter().map(inside)
+        self.offsets[first..count].iter().map(inside)
     }
 }
 
@@ -74,13 +82,8 @@ impl Filters for Pixels {
     }
 
     fn visited(&self) -> Option<Vec<u32>> {
-        self.wanted.holding(self.members(), |site, holds| {
-            let at = self.extent.site(site);
-            for tap in &self.taps {
-                let back = (-i64::from(tap.dt), -i64::from(tap.dy), -i64::from(tap.dx));
-                holds[self.extent.site_index(self.extent.wrapped(at, back))] = true;
-            }
-        })
+        let flags = self.wanted.flags()?;
+        Some(marked(&reach::holders(&self.taps, &self.extent, flags)))
     }
 
     fn mean_size(&self) -> f64 {
@@ -125,6 +128,11 @@ impl Filters for Pixels {
         for site in sites.filter(|&site| self.wanted.site(site as usize)) {
             samples.extend(site * spp..(site + 1) * spp);
         }
+    }
+
+    fn is_empty_at(&self, member: usize, level: f64) -> bool {
+        let weight = |&first: &u8| self.taps.get(usize::from(first)).map_or(0.0, |tap| tap.weight);
+        self.firsts.get(member).is_some_and(|first| weight(first) <= level)
     }
 
     fn is_weighted(&self) -> bool {

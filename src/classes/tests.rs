@@ -94,8 +94,7 @@ fn a_partial_demand_leaves_out_samples_and_the_classes_without_any() {
     let flags: Vec<bool> =
         (0..EXTENT.sites()).map(|site| EXTENT.site(site).frame == 1 && site % 12 < 3).collect();
     let whole = FilterFamily::new(&lattice(FilterForm::LevelSets), EXTENT, Wanted::All).unwrap();
-    let part = FilterFamily::new(&lattice(FilterForm::LevelSets), EXTENT, Wanted::Some(flags.clone().into()))
-        .unwrap();
+    let part = FilterFamily::new(&lattice(FilterForm::LevelSets), EXTENT, Wanted::new(&flags)).unwrap();
     let (mut all, mut some, mut visited) = (Vec::new(), Vec::new(), Vec::new());
     part.list_visited(&mut visited);
     let mut selected = 0;

@@ -257,6 +257,11 @@ impl Default for Slicing {
 }
 
 impl Slicing {
+    /// Directions of a subset in a group of so many dimensions: in one, all are the same.
+    pub(crate) fn per_subset(&self, dims: usize) -> usize {
+        if dims == 1 { 1 } else { self.directions }
+    }
+
     pub(crate) fn validate(&self) -> Result<(), RangeError> {
         let Self { directions, axis_share, batch_slices } = *self;
         let is_good = (1..=LANES).contains(&directions);

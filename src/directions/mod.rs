@@ -96,7 +96,7 @@ impl Slicer {
         target: &Target,
         banks: &mut Banks,
     ) -> Result<Self, TargetError> {
-        let per_subset = if dims == 1 { 1 } else { per_subset.min(LANES) };
+        let per_subset = per_subset.min(LANES);
         let (mut bank, mut target_bank) = (None, None);
         if *target != Target::UniformCube {
             target_bank = Some(banks.of_target(dims, target)?);

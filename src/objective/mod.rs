@@ -40,6 +40,8 @@ pub struct Objective {
     pub(crate) dims: usize,
     pub(crate) domains: Vec<Domain>,
     pub(crate) terms: Vec<PlannedTerm>,
+    /// Share of the terms of a whole table, by weight and dimensions.
+    share: f64,
     pub(crate) wanted: Wanted,
 }
 
@@ -63,7 +65,7 @@ impl Objective {
     /// # Ok::<(), fsot::objective::ObjectiveError>(())
     /// ```
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
-        Self::planned(config, config.terms.iter().cloned().enumerate().collect(), Wanted::All)
+        Self::planned(config, config.terms.iter().cloned().enumerate().collect(), 1.0, Wanted::All)
     }
 
     /// The same for the part of a table that a renderer will really consume.
@@ -71,8 +73,9 @@ impl Objective {
     /// A demand of other width, height or frames is folded onto the table first, which tiles it. Samples of
     /// other sites and dimensions outside the demanded groups belong to no class any more: a subset holds its
     /// demanded samples alone, whose errors are the only ones that a filter sees; terms lose the dimensions
-    /// that are not demanded, and classes without a demanded sample are never drawn. The cost is in
-    /// proportion to what is left.
+    /// that are not demanded, and classes without a demanded sample are never drawn. Those that are left are
+    /// drawn as often as in a run for the whole table; where one dimension is left of a group, a draw has one
+    /// slice, and all its directions are the same. The cost is in proportion to what is left.
     ///
     /// # Errors
     /// As [`Objective::new`]; a demand for dimensions that the table does not have; a demand for nothing.
@@ -86,24 +89,36 @@ impl Objective {
         let folded = demand.folded(&extent)?;
         let is_demanded = |dim: &usize| demand.groups().iter().flatten().any(|demanded| demanded == dim);
         let mut terms = Vec::new();
+        let [mut weight, mut kept] = [0.0; 2];
         for (index, mut term) in config.terms.iter().cloned().enumerate() {
             // A group that is none stays, so that it is refused.
             if GroupError::check(&term.dims, dims).is_ok() {
+                let slices = |dims: usize| config.slicing.per_subset(dims) as f64;
+                let seen = slices(term.dims.len());
                 term.dims.retain(is_demanded);
+                weight += term.weight;
                 if term.dims.is_empty() {
                     continue;
                 }
+                kept += term.weight * slices(term.dims.len()) / seen;
             }
             terms.push((index, term));
         }
         if terms.is_empty() || folded.count() == 0 {
             return Err(ConfigError::NoDemand);
         }
-        Self::planned(config, terms, Wanted::Some(folded.pixels().into()))
+        let share = if kept < weight { kept / weight } else { 1.0 };
+        Self::planned(config, terms, share, Wanted::new(folded.pixels()))
     }
 
-    /// Plans terms, given with their positions in the configuration.
-    fn planned(config: &Config, terms: Vec<(usize, Term)>, wanted: Wanted) -> Result<Self, ConfigError> {
+    /// Plans terms, given with their positions in the configuration, which are a share of all that a table
+    /// would have.
+    fn planned(
+        config: &Config,
+        terms: Vec<(usize, Term)>,
+        share: f64,
+        wanted: Wanted,
+    ) -> Result<Self, ConfigError> {
         let Config { extent, dims, ref domains, ref slicing, .. } = *config;
         extent.validate(dims)?;
         if domains.len() != dims {
@@ -121,8 +136,8 @@ impl Objective {
         if planned.is_empty() {
             return Err(ConfigError::NoDemand);
         }
-        share_work(&mut planned, extent, slicing);
-        Ok(Self { extent, dims, domains: domains.clone(), terms: planned, wanted })
+        share_work(&mut planned, extent, slicing, share);
+        Ok(Self { extent, dims, domains: domains.clone(), terms: planned, share, wanted })
     }
 
     /// Frames, height, width and samples per pixel of the tables that this objective is planned for.
@@ -159,8 +174,8 @@ impl Objective {
             && term.spec.dims.iter().all(|&dim| self.domains[dim] == Domain::Interval)
     }
 
-    /// Slices of lattice terms that a step draws per visited pixel and frame, in the mean; per class where
-    /// none of the terms has classes per pixel.
+    /// Slices of lattice terms that a step of a whole table draws per visited pixel and frame, in the mean;
+    /// per class where none of the terms has classes per pixel. Of a part of its dimensions, it draws fewer.
     pub(crate) fn slices_per_class_and_step(&self) -> f64 {
         let steady: Vec<_> =
             self.terms.iter().filter(|term| term.steady && term.spec.role == Role::Descend).collect();
@@ -174,7 +189,7 @@ impl Objective {
         };
         let lattice: f64 = self.terms.iter().map(slices).sum();
         if lattice > 0.0 {
-            return lattice / classes(&self.terms, self.extent) as f64;
+            return lattice / (classes(&self.terms, self.extent) as f64 * self.share);
         }
         let descended = |term: &&PlannedTerm| term.spec.role == Role::Descend;
         let any = self.terms.iter().any(|term| descended(&term));

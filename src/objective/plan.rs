@@ -22,6 +22,8 @@ pub(crate) struct PlannedTerm {
     pub slicer: Slicer,
     /// Largest subset that is sorted in lanes; 0 if none is.
     pub longest: usize,
+    /// Whether a lane holds a subset, and not one of a subset's directions.
+    pub abreast: bool,
     /// Networks of the subsets that are sorted in lanes, by their number of blocks.
     pub networks: Vec<Network>,
     /// Boundaries of the quantile cells, where laws are tabulated, for the most frequent sizes.
@@ -75,9 +77,10 @@ impl PlannedTerm {
         let sizes = family.sizes();
         // A subset that is not sorted in lanes gains nothing from sharing its directions.
         let long = sizes[0] > LONGEST;
-        let per_subset = if long { 1 } else { slicing.directions };
+        let per_subset = if long { 1 } else { slicing.per_subset(term.dims.len()) };
         let slicer = Slicer::new(term.dims.len(), per_subset, slicing.axis_share, &term.target, banks)?;
-        let in_lanes = !family.is_weighted() && slicer.per_subset() > 1;
+        let abreast = term.dims.len() == 1 && term.target == Target::UniformCube && family.is_per_site();
+        let in_lanes = !family.is_weighted() && (slicer.per_subset() > 1 || abreast);
         let sizes: BTreeSet<usize> = match sizes.last() {
             _ if !in_lanes => BTreeSet::new(),
             Some(&largest) if family.is_partial() || sizes.len() > MOST_SIZES => {
@@ -98,6 +101,7 @@ impl PlannedTerm {
             family,
             slicer,
             longest,
+            abreast,
             networks,
             grids,
             stretch,
@@ -135,19 +139,20 @@ impl PlannedTerm {
 /// Decides how many subsets a step draws of each term.
 ///
 /// Where pixels have classes of their own, a step is a small part of an epoch and touches are shared by
-/// weight; a slice touches as many samples as its subset holds. Elsewhere there are few classes, none of
+/// weight; a slice touches as many samples as its subset holds. Of terms that are a `share` of those of a
+/// whole table, a step draws that share. Elsewhere there are few classes, none of
 /// which can be spared in a step: all are drawn, and the weights of the terms enter as factors.
-pub(crate) fn share_work(terms: &mut [PlannedTerm], extent: Extent, slicing: &Slicing) {
+pub(crate) fn share_work(terms: &mut [PlannedTerm], extent: Extent, slicing: &Slicing, share: f64) {
     let descended = |term: &&PlannedTerm| term.spec.role == Role::Descend;
     let per_site = !terms.iter().any(|term| descended(&term))
         || terms.iter().filter(descended).any(|term| term.family.is_per_site());
     let touches = |term: &PlannedTerm| term.spec.weight / term.family.mean_size();
     if per_site || slicing.batch_slices.is_some() {
-        let default = || (classes(terms, extent) * slicing.directions).div_ceil(16);
-        let slices = slicing.batch_slices.unwrap_or_else(default);
+        let default = || (classes(terms, extent) * slicing.directions).div_ceil(16) as f64 * share;
+        let slices = slicing.batch_slices.map_or_else(default, |slices| slices as f64);
         let total: f64 = terms.iter().map(touches).sum();
         for term in terms {
-            term.rate = touches(term) / total * slices as f64 / term.slicer.per_subset() as f64;
+            term.rate = touches(term) / total * slices / term.slicer.per_subset() as f64;
         }
         return;
     }

@@ -12,6 +12,8 @@ use crate::transport::SHARED;
 
 /// Subsets per chunk: large enough to pay for handing it to a thread.
 pub(super) const CHUNK: usize = 8;
+/// The same where lanes hold a subset each: enough to find sixteen of about the same size.
+pub(super) const CHUNK_ABREAST: usize = 64;
 /// A step of few subsets is still shared between threads.
 pub(super) const FEWEST_CHUNKS: usize = 8;
 /// Samples that the subsets of a chunk should not exceed in the mean, unless a single one does.
@@ -74,9 +76,10 @@ impl Batch {
     /// samples and not by slices times samples.
     pub(super) fn sizes(&self, objective: &Objective, role: Role, most_touches: usize) -> (usize, usize) {
         let terms = objective.terms.iter().filter(|term| term.spec.role == role && !is_large(term));
+        let most = if terms.clone().any(|term| term.abreast) { CHUNK_ABREAST } else { CHUNK };
         let largest = terms.map(|term| term.family.mean_size()).fold(1.0, f64::max) as usize;
         let fewest = self.draws.len().div_ceil(FEWEST_CHUNKS).max(1);
-        let per_chunk = (CHUNK_TOUCHES / largest).clamp(1, CHUNK).min(fewest);
+        let per_chunk = (CHUNK_TOUCHES / largest).clamp(1, most).min(fewest);
         (per_chunk, (most_touches / (largest * per_chunk)).clamp(2, IN_FLIGHT))
     }
 

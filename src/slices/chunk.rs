@@ -9,6 +9,8 @@ use crate::directions::Directions;
 use crate::directions::cube_bank::Boundary;
 use crate::objective::Objective;
 use crate::objective::plan::PlannedTerm;
+use crate::simd::LANES;
+use crate::transport::abreast::{self, AbreastBuffers, LaneSubset};
 use crate::transport::cells::LaneLaws;
 use crate::transport::gather::{Gather, SubsetSamples};
 use crate::transport::lanes::{self, LaneBuffers};
@@ -26,6 +28,18 @@ pub(super) struct Scratch {
     grid: Vec<Boundary>,
     lanes: LaneBuffers,
     line: LineBuffers,
+    waiting: Vec<Waiting>,
+    abreast: AbreastBuffers,
+}
+
+/// A subset that waits for others to be transported with.
+#[derive(Clone, Copy)]
+struct Waiting {
+    len: usize,
+    /// Its place among the samples and the moves of its chunk.
+    samples: usize,
+    moves: usize,
+    cut: Option<f32>,
 }
 
 /// What the subsets of a chunk pull, in the order of the draws.
@@ -81,8 +95,14 @@ impl<'a, Draws: Iterator<Item = &'a SubsetDraw>> WithSimd for Transport<'a, Draw
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { objective, seed, step, points, draws, chunk, scratch } = self;
         chunk.clear();
+        let mut before = None;
         for draw in draws {
             let term = &objective.terms[draw.term as usize];
+            if let Some(before) = before.replace(term) {
+                if !std::ptr::eq(before, term) {
+                    chunk.transport_abreast(simd, before, points, objective.dims, scratch);
+                }
+            }
             objective.draw_directions(seed, step, draw, &mut scratch.directions, &mut scratch.cut);
             // A long run needs no list.
             let run = term.family.run(draw.member as usize).filter(|run| run.len() > term.longest);
@@ -91,6 +111,9 @@ impl<'a, Draws: Iterator<Item = &'a SubsetDraw>> WithSimd for Transport<'a, Draw
                 term.family.weigh(draw.member as usize, &mut scratch.weights);
             }
             chunk.transport(simd, objective, term, run, points, scratch);
+        }
+        if let Some(term) = before {
+            chunk.transport_abreast(simd, term, points, objective.dims, scratch);
         }
     }
 }
@@ -122,7 +145,7 @@ impl Chunk {
         points: &[f32],
         scratch: &mut Scratch,
     ) {
-        let Scratch { directions, cut, subset, weights, grid, lanes, line } = scratch;
+        let Scratch { directions, cut, subset, weights, grid, lanes, line, waiting, .. } = scratch;
         let samples = run.clone().map_or(SubsetSamples::List(subset), SubsetSamples::Run);
         let (n, dims) = (samples.len(), &term.spec.dims);
         let directions = &*directions;
@@ -143,6 +166,8 @@ impl Chunk {
         }
         if n == 0 {
             // None of the class's samples at this level is demanded.
+        } else if in_lanes && term.abreast {
+            waiting.push(Waiting { len: n, samples: self.samples.len(), moves: first, cut: cut[0] });
         } else if in_lanes {
             let laws = LaneLaws::new(simd, directions, laws, || term.grid(n, grid));
             let network = &term.networks[Network::blocks(n)];
@@ -168,6 +193,31 @@ impl Chunk {
             }
         }
         self.append(Subset { len: n, run: run.map(|run| run.start), single }, subset);
+    }
+
+    /// Transports the subsets of a term that wait, those of like size together.
+    #[inline(always)]
+    fn transport_abreast<S: Simd>(
+        &mut self,
+        simd: S,
+        term: &PlannedTerm,
+        points: &[f32],
+        dims: usize,
+        scratch: &mut Scratch,
+    ) {
+        let Scratch { waiting, abreast, .. } = scratch;
+        let Self { samples, moves, squares, .. } = self;
+        waiting.sort_unstable_by_key(|subset| (subset.len, subset.moves));
+        for group in waiting.chunks(LANES) {
+            let mut subsets = [LaneSubset { samples: &[], cut: None }; LANES];
+            for (lane, &Waiting { len, samples: first, cut, .. }) in subsets.iter_mut().zip(group) {
+                *lane = LaneSubset { samples: &samples[first..first + len], cut };
+            }
+            let (subsets, table) = (&subsets[..group.len()], (points, dims, term.spec.dims[0]));
+            let put = |lane: usize, position, moved| moves[group[lane].moves + position] = moved;
+            *squares += abreast::transport(simd, subsets, table, &term.networks, abreast, put);
+        }
+        waiting.clear();
     }
 
     fn append(&mut self, subset: Subset, list: &mut Vec<u32>) {

@@ -97,11 +97,15 @@ impl Objective {
                     true => epoch as f64 * GOLDEN_RATIO + f64::from(member) * std::f64::consts::SQRT_2,
                     false => turn + i * GOLDEN_RATIO,
                 };
+                // Jittered strata of the level against a rotated golden-ratio sequence of the phase.
+                let level = ((i + generator.random::<f64>()) / strata).min(1.0 - f64::EPSILON);
+                if term.family.is_empty_at(member as usize, level) {
+                    continue;
+                }
                 draws.push(SubsetDraw {
                     term: index as u32,
                     member,
-                    // Jittered strata of the level against a rotated golden-ratio sequence of the phase.
-                    level: ((i + generator.random::<f64>()) / strata).min(1.0 - f64::EPSILON),
+                    level,
                     phase: phase.fract(),
                     name: (index as u64) << 32 | (visit - begin) | pick.mark(),
                 });

@@ -28,7 +28,7 @@ fn cases() -> Vec<Tiles> {
         // Two frames, which lie at both ends where there are more.
         let frames = (0..extent.sites()).map(|site| (site / (height * width) + 1) % frames < 2);
         let [flags, frames] =
-            [flags.collect::<Vec<bool>>(), frames.collect()].map(|wanted| Wanted::Some(wanted.into()));
+            [flags.collect::<Vec<bool>>(), frames.collect()].map(|wanted| Wanted::new(&wanted));
         for wanted in [Wanted::All, flags, frames] {
             cases.push(Tiles::new(extent, 2, &taps(&extent), &wanted));
         }
@@ -114,7 +114,7 @@ fn a_compact_demand_is_cut_by_itself() {
     let extent = Extent::still(64, 64);
     // Sixteen rows and columns around the corner.
     let wanted = |site: usize| [site / 64, site % 64].iter().all(|&at| !(8..56).contains(&at));
-    let wanted = Wanted::Some((0..extent.sites()).map(wanted).collect::<Vec<bool>>().into());
+    let wanted = Wanted::new(&(0..extent.sites()).map(wanted).collect::<Vec<bool>>());
     let tiles = Tiles::new(extent, 2, &taps(&extent), &wanted);
     assert_eq!(tiles.runs(), 16);
     assert!((0..16).all(|index| tiles.run(index).lanes().count() == LANES));

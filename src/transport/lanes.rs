@@ -16,7 +16,7 @@ use crate::transport::network::Network;
 pub(crate) const LONGEST: usize = 1024;
 
 /// Low bits of a key, which hold the place; the others hold the value.
-const PLACE_MASK: u32 = LONGEST as u32 - 1;
+pub(super) const PLACE_MASK: u32 = LONGEST as u32 - 1;
 
 /// Buffers of one worker.
 #[derive(Clone, Debug)]
@@ -153,7 +153,7 @@ fn projected(point: &[f32], theta: &[Row]) -> Row {
 /// Keys that sort as the projections do. A projection scaled to (1, 2) has its value in the 23 bits of the
 /// mantissa, which move up to make room for the position.
 #[inline(always)]
-fn encode<S: Simd>(simd: S, projections: &[Row], extent: &Row, keys: &mut [[u32; LANES]]) {
+pub(super) fn encode<S: Simd>(simd: S, projections: &[Row], extent: &Row, keys: &mut [[u32; LANES]]) {
     /// Room for the rounding of projections at the ends of the support, in up to a thousand dimensions.
     const INSIDE: f32 = 1.0 - 1.0 / 4096.0;
     const MANTISSA: u32 = f32::MANTISSA_DIGITS - 1;

@@ -1,5 +1,6 @@
 //! One-dimensional transport in `f32`: sixteen slices at once, or a long one.
 
+pub(crate) mod abreast;
 pub(crate) mod cells;
 pub(crate) mod gather;
 pub(crate) mod lanes;
