@@ -50,7 +50,7 @@ impl Pixels {
     /// Sites under the taps of a class whose weight exceeds `level`, in the order of the taps, but for the
     /// first ones that are not demanded. The weighted form has its whole support at any level.
     #[inline(always)]
-    fn tapped_sites(&self, member: usize, level: f64) -> impl Iterator<Item = u32> {
+    fn tapped_sites(&self, member: usize, level: f64) -> impl ExactSizeIterator<Item = u32> {
         let count = match self.form {
             FilterForm::Weighted => self.offsets.len(),
             FilterForm::LevelSets => self.taps.partition_point(|tap| tap.weight > level),
@@ -125,8 +125,22 @@ impl Filters for Pixels {
             // The common case by itself, without a choice per sample.
             return samples.extend(sites);
         }
-        for site in sites.filter(|&site| self.wanted.site(site as usize)) {
-            samples.extend(site * spp..(site + 1) * spp);
+        let Some(flags) = self.wanted.flags() else {
+            return sites.for_each(|site| samples.extend(site * spp..(site + 1) * spp));
+        };
+        // All are written and those that count are kept: nobody can foresee which.
+        let mut kept = 0;
+        samples.resize(sites.len(), 0);
+        for site in sites {
+            samples[kept] = site;
+            kept += usize::from(flags[site as usize]);
+        }
+        samples.truncate(kept);
+        if spp > 1 {
+            samples.resize(kept * spp as usize, 0);
+            for place in (0..samples.len()).rev() {
+                samples[place] = samples[place / spp as usize] * spp + (place % spp as usize) as u32;
+            }
         }
     }
 
