@@ -23,6 +23,7 @@ mod field;
 mod lines;
 mod modes;
 mod pairs;
+mod scattered;
 mod sweeper;
 mod tiles;
 

@@ -102,22 +102,34 @@ impl Pairs {
 
     /// How far a unit of the pull should move a sample: `n r`, see [`crate::config::Sweeps`].
     pub(super) fn natural_step(&self) -> f64 {
-        self.crowd * self.room()
+        self.crowd * self.room(self.crowd)
     }
 
-    /// The room around a sample. In one dimension the pull is a sum of signs, flat between one neighbour and
-    /// the next: there it takes the room of several to feel where to go.
-    fn room(&self) -> f64 {
+    /// The same of a sample whose neighbours have weights of this sum.
+    pub(super) fn natural_step_of(&self, total: f64) -> f64 {
+        let crowd = self.crowd * total / f64::from(self.total);
+        crowd * self.room(crowd)
+    }
+
+    /// The room around a sample with such a crowd. In one dimension the pull is a sum of signs, flat between
+    /// one neighbour and the next: there it takes the room of several to feel where to go.
+    fn room(&self, crowd: f64) -> f64 {
         let dims = self.dims.len() as f64;
         let ball = PI.powf(0.5 * dims) / libm::tgamma(0.5 * dims + 1.0);
-        let room = (ball * self.crowd).powf(-1.0 / dims);
+        let room = (ball * crowd).powf(-1.0 / dims);
         if self.dims.len() == 1 { ROOMS_ON_A_LINE * room } else { room }
     }
 
     /// Distances up to about this share of a sample's room count as longer than they are, from now on.
     pub(super) fn soften(&mut self, share: f64) {
-        self.softness = ((share * self.room()) as f32).powi(2) + NEAREST;
+        self.softness = ((share * self.room(self.crowd)) as f32).powi(2) + NEAREST;
         self.steepness = (RAMP * self.softness.sqrt()).recip();
+    }
+
+    /// Writes the pull of the cube at the points of all lanes, one row per dimension.
+    #[inline(always)]
+    pub(super) fn field(&self, points: &[Row], field: &mut [Row]) {
+        self.field.gradient(points, field);
     }
 
     /// Neighbours that the pull on a sample looks at.
@@ -208,47 +220,54 @@ impl Pairs {
             let row = tiles.row(sample, run, [span.dt, span.dy]);
             for &RowTap { dx, weight } in &self.taps[span.taps.clone()] {
                 let others = &row[tiles.column(run, dx)..][..planes];
-                let mut strengths = [0.0; LANES];
-                if MOST == 1 {
-                    let Cell(other) = others[places[0]];
-                    for lane in 0..LANES {
-                        strengths[lane] = weight * self.ramp(own[0][lane] - other[lane]);
-                    }
-                } else {
-                    let mut squares = [self.softness; LANES];
-                    for k in 0..dims {
-                        let Cell(other) = others[places[k]];
-                        for lane in 0..LANES {
-                            let away = own[k][lane] - other[lane];
-                            squares[lane] += away * away;
-                        }
-                    }
-                    for lane in 0..LANES {
-                        strengths[lane] = weight * inverse_root(squares[lane]);
-                    }
-                }
+                let mut weights = [weight; LANES];
                 if partial {
                     let Cell(demanded) = others[planes - 1];
                     for lane in 0..LANES {
-                        strengths[lane] *= demanded[lane];
-                        total[lane] += weight * demanded[lane];
+                        weights[lane] *= demanded[lane];
+                        total[lane] += weights[lane];
                     }
                 }
-                if MOST == 1 {
-                    for lane in 0..LANES {
-                        sums[0][lane] += strengths[lane];
-                    }
-                    continue;
-                }
-                for k in 0..dims {
-                    let Cell(other) = others[places[k]];
-                    for lane in 0..LANES {
-                        sums[k][lane] += strengths[lane] * (own[k][lane] - other[lane]);
-                    }
-                }
+                self.push(dims, &own, |k| others[places[k]].0, &weights, &mut sums);
             }
         }
         (seen.sums, seen.total) = (sums, total);
+    }
+
+    /// Adds the unit vectors away from other samples, one per lane, by weight.
+    #[inline(always)]
+    pub(super) fn push<const MOST: usize>(
+        &self,
+        dims: usize,
+        own: &[Row; MOST],
+        other: impl Fn(usize) -> Row,
+        weights: &Row,
+        sums: &mut [Row; MOST],
+    ) {
+        if MOST == 1 {
+            let other = other(0);
+            for lane in 0..LANES {
+                sums[0][lane] += weights[lane] * self.ramp(own[0][lane] - other[lane]);
+            }
+            return;
+        }
+        let (mut squares, mut strengths) = ([self.softness; LANES], [0.0; LANES]);
+        for k in 0..dims {
+            let other = other(k);
+            for lane in 0..LANES {
+                let away = own[k][lane] - other[lane];
+                squares[lane] += away * away;
+            }
+        }
+        for lane in 0..LANES {
+            strengths[lane] = weights[lane] * inverse_root(squares[lane]);
+        }
+        for k in 0..dims {
+            let other = other(k);
+            for lane in 0..LANES {
+                sums[k][lane] += strengths[lane] * (own[k][lane] - other[lane]);
+            }
+        }
     }
 
     /// The unit vector on a line, a sign, as soft as `d / √(d² + softness)` is, without a root.

@@ -8,7 +8,9 @@ use rayon::prelude::*;
 
 use super::balance::Balance;
 use super::pairs::{BLOCK, Pairs};
-use super::tiles::{Run, Tiles};
+use super::scattered::Scattered;
+use super::tiles::Tiles;
+use crate::classes::Wanted;
 use crate::config::{Role, Sweeps};
 use crate::error::ConfigError;
 use crate::kernel::Tap;
@@ -29,13 +31,17 @@ pub(crate) struct Sweeper {
     /// What a term's pull counts on each of its coordinates.
     factors: Vec<Vec<f32>>,
     tiles: Tiles,
+    /// Instead of tiles, which only balance then, where little is demanded here and there.
+    scattered: Option<Scattered>,
     balance: Balance,
     dims: usize,
+    /// Dimensions that some term sees.
+    swept: Vec<usize>,
     /// Steps of a sweep.
     steps: usize,
     /// The sweep that goes on.
     sweep: u64,
-    /// Runs that hold a demanded sample, in the order of this sweep.
+    /// Runs that hold a demanded sample, or scattered samples, in the order of this sweep.
     order: Vec<u32>,
     pulls: Vec<Row>,
     /// Largest rate that settles.
@@ -85,25 +91,39 @@ impl Sweeper {
         for group in &groups {
             group[0].spec.dims.iter().for_each(|&dim| seen[dim] += weight(group));
         }
-        let factors = groups.iter().zip(&terms).map(|(group, pairs)| {
-            let strength = weight(group) * pairs.natural_step();
-            pairs.dims.iter().map(|&dim| (strength / seen[dim]) as f32).collect()
-        });
-        let factors = factors.collect();
-        let largest = terms.iter().map(Pairs::natural_step).fold(1.0, f64::max);
+        let share = |group: &Vec<&PlannedTerm>| {
+            let weight = weight(group);
+            group[0].spec.dims.iter().map(|&dim| weight / seen[dim]).collect::<Vec<f64>>()
+        };
+        let shares: Vec<Vec<f64>> = groups.iter().map(share).collect();
+        let taps: Vec<Tap> = terms.iter().flat_map(Pairs::taps).collect();
+        let mut tiles = Tiles::new(extent, dims, &taps, &objective.wanted);
+        let mut order = tiles.owned_runs();
+        let pairs = terms.iter().map(Pairs::per_sample).sum::<f64>() * (order.len() * LANES) as f64;
+        let scattered = Scattered::new(objective, &terms, pairs);
+        let mut largest = terms.iter().map(Pairs::natural_step).fold(1.0, f64::max);
+        let step_of = |pairs: &Pairs| if scattered.is_some() { 1.0 } else { pairs.natural_step() };
+        let times = |(shares, pairs): (&Vec<f64>, &Pairs)| -> Vec<f32> {
+            shares.iter().map(|share| (share * step_of(pairs)) as f32).collect()
+        };
+        let factors = shares.iter().zip(&terms).map(times).collect();
+        if let Some(scattered) = &scattered {
+            largest = scattered.largest_step().max(1.0);
+            let (extent, flags) = scattered.extent();
+            tiles = Tiles::new(extent, dims, &[], &Wanted::new(&flags));
+            order = scattered.samples().collect();
+        }
         let steps = ((STEPS_PER_UNIT * largest) as usize).next_power_of_two().clamp(FEWEST_STEPS, MOST_STEPS);
         let most = COLLECTIVE * steps as f64 / largest;
-        let taps: Vec<Tap> = terms.iter().flat_map(Pairs::taps).collect();
-        let tiles = Tiles::new(extent, dims, &taps, &objective.wanted);
-        let is_wanted = |&index: &u32| tiles.run(index as usize).lanes().next().is_some();
-        let order = (0..tiles.runs() as u32).filter(is_wanted).collect();
         Ok(Self {
             arch,
-            terms,
             factors,
             tiles,
+            scattered,
             balance: Balance::new(objective),
             dims,
+            swept: (0..dims).filter(|&dim| seen[dim] > 0.0).collect(),
+            terms,
             steps,
             sweep: 0,
             order,
@@ -117,7 +137,10 @@ impl Sweeper {
     /// Reads the table, if others have moved samples.
     pub(crate) fn load(&mut self, points: &[f32]) {
         if self.behind {
-            self.tiles.load(points);
+            match &mut self.scattered {
+                Some(scattered) => scattered.load(points),
+                None => self.tiles.load(points),
+            }
             (self.ahead, self.behind) = (false, false);
         }
     }
@@ -135,8 +158,10 @@ impl Sweeper {
 
     /// Writes the table as it is now, where samples have moved since it was stored.
     pub(crate) fn write_to(&self, points: &mut [f32]) {
-        if self.ahead {
-            self.tiles.store(points);
+        match &self.scattered {
+            _ if !self.ahead => {}
+            Some(scattered) => scattered.store(points),
+            None => self.tiles.store(points),
         }
     }
 
@@ -148,7 +173,8 @@ impl Sweeper {
     /// Pairs of samples that a sweep looks at.
     pub(crate) fn pairs(&self) -> f64 {
         let per_sample: f64 = self.terms.iter().map(Pairs::per_sample).sum();
-        per_sample * (self.order.len() * LANES) as f64
+        let of_tiles = || per_sample * (self.order.len() * LANES) as f64;
+        self.scattered.as_ref().map_or_else(of_tiles, Scattered::pairs)
     }
 
     /// Begins a sweep, in an order named by seed and sweep.
@@ -168,7 +194,22 @@ impl Sweeper {
     pub(crate) fn step(&mut self, step: usize, how: Motion, domains: &[Domain]) -> MeanSquare {
         let rate = how.rate.min(self.most);
         self.terms.iter_mut().for_each(|pairs| pairs.soften(how.softening * rate));
-        let Self { arch, terms, factors, tiles, dims, steps, order, pulls, ahead, .. } = self;
+        let pulls = match self.scattered {
+            Some(_) => self.move_scattered(step, rate as f32, domains),
+            None => self.move_runs(step, rate as f32, domains),
+        };
+        self.ahead = true;
+        let turns = self.balance.turns();
+        if (step + 1).is_multiple_of(self.steps / turns) {
+            let turn = self.sweep * turns as u64 + (step / (self.steps / turns)) as u64;
+            self.balance(turn, how.balance);
+        }
+        pulls
+    }
+
+    /// Moves the runs of one step. Returns the pulls' mean square.
+    fn move_runs(&mut self, step: usize, rate: f32, domains: &[Domain]) -> MeanSquare {
+        let Self { arch, terms, factors, tiles, dims, swept, steps, order, pulls, .. } = self;
         let dims = *dims;
         let runs = &order[part(order.len(), *steps, step)];
         pulls.resize(runs.len() * dims, [0.0; LANES]);
@@ -179,16 +220,29 @@ impl Sweeper {
         let mut all = MeanSquare::default();
         for (pulls, &run) in pulls.chunks_exact(dims).zip(runs) {
             let run = tiles.run(run as usize);
-            for (dim, (pull, &domain)) in pulls.iter().zip(domains).enumerate() {
-                all.add(pull, run);
-                tiles.shift(run, dim, &pull.map(|pull| rate as f32 * pull), domain);
+            for &dim in swept.iter() {
+                all.add(&pulls[dim], run.lanes());
+                tiles.shift(run, dim, &pulls[dim].map(|pull| rate * pull), domains[dim]);
             }
         }
-        *ahead = true;
-        let turns = self.balance.turns();
-        if (step + 1).is_multiple_of(self.steps / turns) {
-            let turn = self.sweep * turns as u64 + (step / (self.steps / turns)) as u64;
-            self.balance(turn, how.balance);
+        all
+    }
+
+    /// The same for scattered samples.
+    fn move_scattered(&mut self, step: usize, rate: f32, domains: &[Domain]) -> MeanSquare {
+        let mut all = MeanSquare::default();
+        let Self { arch, terms, factors, scattered, dims, swept, steps, order, pulls, .. } = self;
+        let Some(scattered) = scattered else { return all };
+        let samples = &order[part(order.len(), *steps, step)];
+        pulls.resize(samples.len().div_ceil(LANES) * *dims, [0.0; LANES]);
+        scattered.pull(*arch, terms, factors, samples, pulls);
+        for (pulls, samples) in pulls.chunks_exact(*dims).zip(samples.chunks(LANES)) {
+            for &dim in swept.iter() {
+                all.add(&pulls[dim], 0..samples.len());
+                for (pull, &sample) in pulls[dim].iter().zip(samples) {
+                    scattered.shift(sample, dim, rate * pull, domains[dim]);
+                }
+            }
         }
         all
     }
@@ -200,7 +254,15 @@ impl Sweeper {
 
     /// Takes one turn of the balance, `share` of the way.
     pub(crate) fn balance(&mut self, turn: u64, share: f64) {
-        self.balance.advance(self.arch, &mut self.tiles, turn, share);
+        let Self { arch, balance, tiles, scattered, .. } = self;
+        match scattered {
+            Some(scattered) => {
+                tiles.load(scattered.points());
+                balance.advance(*arch, tiles, turn, share);
+                tiles.store(scattered.points_mut());
+            }
+            None => balance.advance(*arch, tiles, turn, share),
+        }
         self.ahead = true;
     }
 
@@ -213,6 +275,15 @@ impl Sweeper {
     #[cfg(test)]
     pub(super) fn each_pull(&self, step: usize, mut visit: impl FnMut(usize, f32)) {
         let runs = &self.order[part(self.order.len(), self.steps, step)];
+        if let Some(scattered) = &self.scattered {
+            for (pulls, samples) in self.pulls.chunks_exact(self.dims).zip(runs.chunks(LANES)) {
+                for (lane, &sample) in samples.iter().enumerate() {
+                    let first = scattered.in_table(sample) * self.dims;
+                    pulls.iter().enumerate().for_each(|(dim, pull)| visit(first + dim, pull[lane]));
+                }
+            }
+            return;
+        }
         for (pulls, &run) in self.pulls.chunks_exact(self.dims).zip(runs) {
             let run = self.tiles.run(run as usize);
             for lane in run.lanes() {
@@ -250,9 +321,9 @@ impl AddAssign for MeanSquare {
 
 impl MeanSquare {
     #[inline(always)]
-    fn add(&mut self, pulls: &Row, run: Run) {
+    fn add(&mut self, pulls: &Row, lanes: impl Iterator<Item = usize>) {
         let mut squares = [0.0; LANES];
-        for lane in run.lanes() {
+        for lane in lanes {
             squares[lane] = pulls[lane] * pulls[lane];
             self.count += 1;
         }

@@ -114,6 +114,11 @@ impl Tiles {
         self.extent.spp * self.owners.len()
     }
 
+    /// Runs that hold a demanded sample.
+    pub(super) fn owned_runs(&self) -> Vec<u32> {
+        (0..self.runs() as u32).filter(|&index| self.run(index as usize).owners != 0).collect()
+    }
+
     /// Runs that follow each other lie next to each other.
     pub(super) fn run(&self, index: usize) -> Run {
         let [_, height, width] = self.axes.each_ref().map(Axis::cells);
