@@ -46,8 +46,8 @@ struct Neighbours {
 /// The place of no site.
 const NOWHERE: u32 = u32::MAX;
 
-/// What a listed pair costs, in pairs of tiles.
-const LISTED_COST: f64 = 4.0;
+/// What a listed pair costs, in pairs of tiles: its coordinates are gathered one by one.
+const LISTED_COST: f64 = 8.0;
 
 /// Samples whose lists are counted before all are.
 const PROBES: usize = 256;
@@ -243,15 +243,15 @@ impl NullaryFnOnce for PullsOfSamples<'_> {
         let Self { scattered, terms, shares, samples, pulls } = self;
         pulls.fill([0.0; LANES]);
         for ((pairs, shares), neighbours) in terms.iter().zip(shares).zip(&scattered.neighbours) {
-            let add = match pairs.dims.len() {
-                1 => Scattered::add::<1>,
-                2 => Scattered::add::<2>,
-                3 => Scattered::add::<3>,
-                4 => Scattered::add::<4>,
-                5..=8 => Scattered::add::<8>,
-                _ => Scattered::add::<MOST_DIMS>,
-            };
-            add(scattered, pairs, neighbours, shares, samples, pulls);
+            // Calls, and no pointer to a function, which would be compiled for no instruction set.
+            match pairs.dims.len() {
+                1 => scattered.add::<1>(pairs, neighbours, shares, samples, pulls),
+                2 => scattered.add::<2>(pairs, neighbours, shares, samples, pulls),
+                3 => scattered.add::<3>(pairs, neighbours, shares, samples, pulls),
+                4 => scattered.add::<4>(pairs, neighbours, shares, samples, pulls),
+                5..=8 => scattered.add::<8>(pairs, neighbours, shares, samples, pulls),
+                _ => scattered.add::<MOST_DIMS>(pairs, neighbours, shares, samples, pulls),
+            }
         }
     }
 }
@@ -304,23 +304,36 @@ impl Scattered {
         weights: &[f32],
     ) -> [f32; MOST] {
         let mut sums = [[0.0; LANES]; MOST];
+        // Gathered first and looked at later, because a vector cannot be loaded while its parts are on their
+        // way to memory.
+        let (mut others, mut heavy) = ([[[0.0; LANES]; MOST]; ROWS], [[0.0; LANES]; ROWS]);
+        let dims = pairs.dims.len();
         for sample in 0..self.spp {
-            for (places, listed) in places.chunks(LANES).zip(weights.chunks(LANES)) {
+            for (places, weights) in places.chunks(ROWS * LANES).zip(weights.chunks(ROWS * LANES)) {
+                let rows = places.len().div_ceil(LANES);
                 // Lanes without a neighbour weigh nothing.
-                let (mut others, mut weights) = (*own, [0.0; LANES]);
-                weights[..listed.len()].copy_from_slice(listed);
-                for (lane, &place) in places.iter().enumerate() {
-                    let values = &self.points[(place as usize * self.spp + sample) * self.dims..];
-                    for (k, &dim) in pairs.dims.iter().enumerate() {
-                        others[k][lane] = values[dim];
+                (others[rows - 1], heavy[rows - 1]) = (*own, [0.0; LANES]);
+                heavy.as_flattened_mut()[..weights.len()].copy_from_slice(weights);
+                for (places, others) in places.chunks(LANES).zip(&mut others) {
+                    for (lane, &place) in places.iter().enumerate() {
+                        let first = (place as usize * self.spp + sample) * self.dims;
+                        let values = &self.points[first..first + self.dims];
+                        for (k, &dim) in pairs.dims.iter().enumerate() {
+                            others[k][lane] = values[dim];
+                        }
                     }
                 }
-                pairs.push(pairs.dims.len(), own, |k| others[k], &weights, &mut sums);
+                for (others, weights) in others[..rows].iter().zip(&heavy) {
+                    pairs.push(dims, own, |k| others[k], weights, &mut sums);
+                }
             }
         }
         sums.map(simd::sum)
     }
 }
+
+/// Vectors of neighbours that are gathered together.
+const ROWS: usize = 8;
 
 #[cfg(test)]
 #[path = "scattered_tests.rs"]
