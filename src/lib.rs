@@ -65,7 +65,8 @@
 //!   bit, and a run amplifies that; tables then differ, their quality doesn't.
 //! * Values lie in `[0, 1)`; 1.0 never appears.
 //! * Steps allocate nothing once their buffers have grown; memory stays below eleven times the table (twelve
-//!   with SGD, thirteen with Adam; seven in sweeps), plus a few MiB per thread. Sweeps work on a copy that
+//!   with SGD, thirteen with Adam; nine in sweeps), plus a few MiB per thread. Slices keep 4 bytes per pixel
+//!   and descended term besides, and 64 bytes per pixel where a table has one dimension. Sweeps work on a copy that
 //!   has margins as wide as filters reach, which counts in small tiles: 1.2 times a table of 512×512 pixels,
 //!   3 times one of 64×64, 9 times one of 24×24, 30 times one of 4×4. A target other than the cube is
 //!   tabulated once, in up to 17 MiB.

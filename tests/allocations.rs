@@ -1,8 +1,9 @@
 //! Steps work in buffers that the first ones have made, and those are few.
 
 use allocation_counter::measure;
-use fsot::config::Work;
-use fsot::{Config, Extent, Optimizer, Until};
+use fsot::config::{Role, Work};
+use fsot::kernel::Kernel;
+use fsot::{Config, Extent, Objective, Optimizer, Until};
 
 /// Allocations of 64 steps and 4 sweeps, after 64 times as many have grown the buffers to the largest
 /// subsets.
@@ -54,5 +55,52 @@ fn the_peak_of_a_run_is_a_small_multiple_of_the_table() {
         // what is in flight (2, less of a larger table).
         let multiple = peak as f64 / table;
         assert!(multiple < most, "{slices_per_class} slices, {sweeps} sweeps: {multiple:.2} times the table");
+    }
+}
+
+/// The law that the crate page states: so many times the table, an order of visits per term, and in one
+/// dimension the draws of a step.
+#[test]
+fn memory_follows_its_law() {
+    let long = Extent { frames: 64, height: 64, width: 64, spp: 1 };
+    let [still, many] =
+        [(640, 1), (192, 12)].map(|(side, spp)| Extent { frames: 1, height: side, width: side, spp });
+    for (extent, dims, kernels) in
+        [(long, 1, 1), (still, 1, 1), (still, 1, 8), (many, 1, 8), (still, 2, 8), (long, 4, 8), (many, 3, 2)]
+    {
+        let kernels: Vec<Kernel> = (0..kernels).map(|k| Kernel::gaussian(1.0 + 0.3 * f64::from(k))).collect();
+        let mut config = Config::new(extent, dims);
+        if kernels.len() > 1 {
+            config = config.with_kernels(&kernels);
+        }
+        let objective = Objective::new(&config).unwrap();
+        let terms = objective.terms().filter(|term| term.role == Role::Descend).count();
+        // Buffers of the thread, tabulated laws.
+        let fixed = 4e6;
+        let table = (extent.samples() * dims * size_of::<f32>()) as f64;
+        let orders = (4 * extent.sites() * terms) as f64;
+        let draws = if dims == 1 { (64 * extent.sites()) as f64 } else { 0.0 };
+        for (slices_per_class, sweeps) in [(2, 0), (0, 1)] {
+            let peak = one_thread().install(|| {
+                measure(|| {
+                    let mut optimizer = Optimizer::new(config.clone()).unwrap();
+                    let work = Until::Work(Work { slices_per_class, sweeps, ..Work::default() });
+                    optimizer.run(work).unwrap();
+                })
+                .bytes_max
+            });
+            let law = match sweeps {
+                0 => 11.0 * table + orders + draws + fixed,
+                _ => 9.0 * table + fixed,
+            };
+            let case = format!("{extent:?}, {dims} dimensions, {terms} terms, {sweeps} sweeps");
+            let times = peak as f64 / table;
+            println!("{case}: {times:.1} times the table, {:.2} of the law", peak as f64 / law);
+            assert!(
+                (peak as f64) < law,
+                "{case}: {times:.1} times the table, {:.2} of the law",
+                peak as f64 / law
+            );
+        }
     }
 }

@@ -40,7 +40,7 @@ pub struct Objective {
     pub(crate) dims: usize,
     pub(crate) domains: Vec<Domain>,
     pub(crate) terms: Vec<PlannedTerm>,
-    /// Share of the terms of a whole table, by weight and dimensions.
+    /// Slices that a step draws of those that it would draw for the whole table, as far as dimensions go.
     share: f64,
     pub(crate) wanted: Wanted,
 }
@@ -65,7 +65,7 @@ impl Objective {
     /// # Ok::<(), fsot::objective::ObjectiveError>(())
     /// ```
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
-        Self::planned(config, config.terms.iter().cloned().enumerate().collect(), 1.0, Wanted::All)
+        Self::planned(config, config.terms.iter().cloned().enumerate().collect(), Wanted::All)
     }
 
     /// The same for the part of a table that a renderer will really consume.
@@ -89,36 +89,24 @@ impl Objective {
         let folded = demand.folded(&extent)?;
         let is_demanded = |dim: &usize| demand.groups().iter().flatten().any(|demanded| demanded == dim);
         let mut terms = Vec::new();
-        let [mut weight, mut kept] = [0.0; 2];
         for (index, mut term) in config.terms.iter().cloned().enumerate() {
             // A group that is none stays, so that it is refused.
             if GroupError::check(&term.dims, dims).is_ok() {
-                let slices = |dims: usize| config.slicing.per_subset(dims) as f64;
-                let seen = slices(term.dims.len());
                 term.dims.retain(is_demanded);
-                weight += term.weight;
                 if term.dims.is_empty() {
                     continue;
                 }
-                kept += term.weight * slices(term.dims.len()) / seen;
             }
             terms.push((index, term));
         }
         if terms.is_empty() || folded.count() == 0 {
             return Err(ConfigError::NoDemand);
         }
-        let share = if kept < weight { kept / weight } else { 1.0 };
-        Self::planned(config, terms, share, Wanted::new(folded.pixels()))
+        Self::planned(config, terms, Wanted::new(folded.pixels()))
     }
 
-    /// Plans terms, given with their positions in the configuration, which are a share of all that a table
-    /// would have.
-    fn planned(
-        config: &Config,
-        terms: Vec<(usize, Term)>,
-        share: f64,
-        wanted: Wanted,
-    ) -> Result<Self, ConfigError> {
+    /// Plans terms, given with their positions in the configuration, which may have others.
+    fn planned(config: &Config, terms: Vec<(usize, Term)>, wanted: Wanted) -> Result<Self, ConfigError> {
         let Config { extent, dims, ref domains, ref slicing, .. } = *config;
         extent.validate(dims)?;
         if domains.len() != dims {
@@ -136,6 +124,14 @@ impl Objective {
         if planned.is_empty() {
             return Err(ConfigError::NoDemand);
         }
+        // Where a demand leaves terms out, or all but one dimension of them, a step has as many visits fewer.
+        let slices = |term: &Term| term.weight * slicing.per_subset(term.dims.len()) as f64;
+        let descended = |term: &&Term| term.role == Role::Descend;
+        let [given, all] = [
+            terms.iter().map(|(_, term)| term).filter(descended).map(slices).sum::<f64>(),
+            config.terms.iter().filter(descended).map(slices).sum(),
+        ];
+        let share = if given < all { given / all } else { 1.0 };
         share_work(&mut planned, extent, slicing, share);
         Ok(Self { extent, dims, domains: domains.clone(), terms: planned, share, wanted })
     }

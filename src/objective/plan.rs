@@ -139,8 +139,8 @@ impl PlannedTerm {
 /// Decides how many subsets a step draws of each term.
 ///
 /// Where pixels have classes of their own, a step is a small part of an epoch and touches are shared by
-/// weight; a slice touches as many samples as its subset holds. Of terms that are a `share` of those of a
-/// whole table, a step draws that share. Elsewhere there are few classes, none of
+/// weight; a slice touches as many samples as its subset holds. Of terms that make a `share` of the slices of
+/// a whole table, a step draws that share. Elsewhere there are few classes, none of
 /// which can be spared in a step: all are drawn, and the weights of the terms enter as factors.
 pub(crate) fn share_work(terms: &mut [PlannedTerm], extent: Extent, slicing: &Slicing, share: f64) {
     let descended = |term: &&PlannedTerm| term.spec.role == Role::Descend;

@@ -62,6 +62,7 @@ impl Batch {
         let is_large = |draw: &SubsetDraw| is_large(&objective.terms[draw.term as usize]);
         self.large.extend(self.draws.iter().filter(|draw| is_large(draw)));
         self.draws.retain(|draw| !is_large(draw));
+        self.order.reserve_exact(self.draws.len());
         // Chunks of neighbours read and move the same part of the table. Terms come one after the other as it
         // is.
         for same_term in self.draws.chunk_by(|a, b| a.term == b.term) {

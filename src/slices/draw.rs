@@ -65,6 +65,8 @@ impl Objective {
     ) {
         orders.resize_with(self.terms.len(), VisitOrder::default);
         draws.clear();
+        // Room for all at once: in one dimension a step draws as many subsets as there are classes.
+        draws.reserve_exact(self.subsets_per_step(pick));
         for (index, (term, order)) in self.terms.iter().zip(orders).enumerate() {
             let is_swept = matches!(pick, Picked::Each(_)) && self.is_balanced_in_sweeps(term);
             if term.spec.role != pick.role() || is_swept {
@@ -111,6 +113,16 @@ impl Objective {
                 });
             }
         }
+    }
+
+    /// Subsets that a step draws at most.
+    fn subsets_per_step(&self, pick: Picked) -> usize {
+        let terms = self.terms.iter().filter(|term| term.spec.role == pick.role());
+        let subsets = terms.map(|term| match pick {
+            Picked::Batch(_) => term.rate as usize + 1,
+            Picked::Each(_) => term.family.visits(),
+        });
+        subsets.sum()
     }
 
     /// Directions and torus cuts of a subset.
