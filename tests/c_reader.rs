@@ -13,6 +13,7 @@ fn a_c_program_reads_a_table() {
     let compiler = Command::new("cc")
         .args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-O1", "-o"])
         .args([&program, &source])
+        .arg("-lm")
         .output();
     let Ok(compiled) = compiler else {
         println!("no C compiler here: left out");
@@ -26,10 +27,14 @@ fn a_c_program_reads_a_table() {
     let output = Command::new(&program).arg(&path).output().unwrap();
     assert!(output.status.success(), "{output:?}");
     let text = String::from_utf8(output.stdout).unwrap();
-    let (shape, value) = text.trim().split_once('\n').unwrap();
+    let [shape, value, displaced] = text.lines().collect::<Vec<_>>()[..] else { panic!("{text}") };
     assert_eq!(shape, "3 7 13 2 3");
     // Nine digits tell every f32 from its neighbours.
     assert_eq!(value.parse::<f32>().unwrap(), table.sample(Site { frame: 0, y: 5, x: 12 }, 0)[1]);
+    let by = table.extent().displacement(1);
+    let there = table.sample(Site { frame: 0, y: 5 + by.y, x: 12 + by.x }, 0)[1];
+    let (place, value) = displaced.rsplit_once(' ').unwrap();
+    assert_eq!((place, value.parse::<f32>().unwrap()), (&*format!("{} {}", by.y, by.x), there));
 
     // What is no table is refused.
     let output = Command::new(&program).arg(&source).output().unwrap();

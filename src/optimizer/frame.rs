@@ -5,9 +5,8 @@ use crate::classes::Classes;
 use crate::config::{Config, Role, Term};
 use crate::error::ConfigError;
 use crate::kernel::TemporalKernel;
-use crate::random::kronecker_steps;
 use crate::sweeps;
-use crate::table::extent::{Extent, Site};
+use crate::table::extent::Extent;
 
 /// In smaller frames there are too few displacements: frames would be the same.
 const FEWEST_PIXELS: usize = 16;
@@ -56,17 +55,14 @@ impl Config {
     }
 }
 
-/// A table whose frames are all the same one, displaced by the R2 sequence (Roberts 2018, "The unreasonable
-/// effectiveness of quasirandom sequences"): frames near each other see parts far from each other of the same
-/// pattern.
+/// A table whose frames are all the same one, each [displaced](Extent::displacement): frames near each other
+/// see parts far from each other of the same pattern.
 pub(super) fn displaced(extent: Extent, frame: &[f32]) -> Vec<f32> {
     let Extent { frames, height, width, .. } = extent;
     let row = frame.len() / height;
-    let [across, down] = [0, 1].map(|axis| kronecker_steps(2)[axis]);
     let mut points = Vec::with_capacity(frames * frame.len());
     for index in 0..frames {
-        let [dy, dx] = [down, across].map(|step| (index as f64 * step).fract());
-        let by = Site { frame: 0, y: (dy * height as f64) as usize, x: (dx * width as f64) as usize };
+        let by = extent.displacement(index as u64);
         for y in 0..height {
             let row = &frame[(y + by.y) % height * row..][..row];
             let (left, right) = row.split_at(by.x * (row.len() / width));

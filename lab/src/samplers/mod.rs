@@ -84,16 +84,6 @@ fn mixed(seed: u64, words: &[u64]) -> u64 {
     words.iter().fold(finalise(seed), |state, &word| finalise(state ^ word.wrapping_mul(GOLDEN)))
 }
 
-/// One step of the R2 sequence (Roberts 2018), across and down, as shares of a side.
-const R2: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
-
-/// Where the `index`-th realisation of a table of `[height, width]` pixels lies: displaced by the R2
-/// sequence, far from each other for as many as there are frames. Index 0 stays in place.
-pub fn displacement(index: u64, [height, width]: [usize; 2]) -> Site {
-    let at = |step: f64, len: usize| ((index as f64 * step).fract() * len as f64) as usize;
-    Site { frame: 0, y: at(R2[1], height), x: at(R2[0], width) }
-}
-
 /// Checks the extent of a table that has one sample per pixel by construction.
 fn one_sample(extent: &Extent, dims: usize) -> Result<(), SamplerError> {
     extent.validate(dims)?;
@@ -186,14 +176,6 @@ mod tests {
                 assert!((mean - 0.5).abs() < allowed, "{name} dim {dim}: {mean}");
             }
         });
-    }
-
-    #[test]
-    fn displacements_are_steps_of_r2() {
-        let steps = fsot::random::kronecker_steps(2);
-        assert!(R2.iter().zip(steps).all(|(r2, step)| (r2 - step).abs() < 1e-15));
-        assert_eq!(displacement(0, [64, 32]), Site { frame: 0, y: 0, x: 0 });
-        assert_eq!(displacement(1, [64, 32]), Site { frame: 0, y: 36, x: 24 });
     }
 
     #[test]

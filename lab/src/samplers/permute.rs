@@ -79,7 +79,7 @@ const RADIUS: i64 = 6;
 /// By how much the mask is displaced from frame to frame, as shares of the tile: that of the R2 sequence, up
 /// to the next number without a divisor in common with the tile's side, so that no place comes again before
 /// all have been there.
-const STEP: [f64; 2] = [super::R2[1], super::R2[0]];
+const STEP: [f64; 2] = [0.569_840_290_998_053_3, 0.754_877_666_246_692_8];
 
 impl SeedPermutation {
     /// Random seeds for a picture of `[height, width]` pixels, to follow the first frame and dimension of a

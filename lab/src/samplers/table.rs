@@ -2,17 +2,14 @@
 
 use fsot::{Extent, SampleTable, Site};
 
-use super::{Sampler, WhiteNoise, displacement, mixed};
+use super::{Sampler, WhiteNoise, mixed};
 
 /// Reads an optimised table at pixel `(x mod width, y mod height)` of frame `t mod frames`.
 ///
 /// What the table does not hold is filled in, and costs quality, never correctness:
-/// * samples beyond the table's `spp` come from the same table displaced by whole pixels. Block `k` of `spp`
-///   samples is shifted by the `k`-th point of the R2 sequence[^r2], so each block alone keeps its blue
-///   noise;
+/// * samples beyond the table's `spp` come from the same table [displaced](Extent::displacement): block `k` of
+///   `spp` samples by the `k`-th point of the R2 sequence, so each block alone keeps its blue noise;
 /// * dimensions beyond the table's are white noise.
-///
-/// [^r2]: Roberts 2018, "The unreasonable effectiveness of quasirandom sequences", extremelearning.com.au.
 #[derive(Clone, Copy, Debug)]
 pub struct TableSampler<'t> {
     table: &'t SampleTable,
@@ -43,7 +40,7 @@ impl Sampler for TableSampler<'_> {
             return self.beyond.sample(site, sample, dim);
         }
         let Extent { frames, height, width, spp } = self.table.extent();
-        let Site { y, x, .. } = displacement((sample as usize / spp) as u64, [height, width]);
+        let Site { y, x, .. } = self.table.extent().displacement((sample as usize / spp) as u64);
         let site = Site {
             frame: site.frame % frames + self.offset.frame,
             y: site.y % height + self.offset.y + y,

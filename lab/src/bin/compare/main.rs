@@ -14,14 +14,14 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
-use fsot::SampleTable;
 use fsot::kernel::TemporalKernel;
+use fsot::{Extent, SampleTable};
 use fsot_lab::figures::mean_and_error;
 use fsot_lab::program::{self, Failure};
 use fsot_lab::render::{
     Comparison, Film, ImageFilter, Reference, Scales, Scene, compare, demand, error_spectrum, render,
 };
-use fsot_lab::samplers::{OwenSobol, Sampler, TableSampler, WhiteNoise, displacement};
+use fsot_lab::samplers::{OwenSobol, Sampler, TableSampler, WhiteNoise};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::sheet::{Cell, Sheet};
@@ -129,8 +129,9 @@ fn run(args: &Args) -> Result<(), Failure> {
         ("Owen-Sobol'".into(), String::new(), Box::new(|seed| Box::new(OwenSobol::new(seed)))),
     ];
     for (label, table) in &tables {
-        let realise: Realise =
-            Box::new(|seed| Box::new(TableSampler::new(table).shifted(displacement(seed, [1024; 2]))));
+        let realise: Realise = Box::new(|seed| {
+            Box::new(TableSampler::new(table).shifted(Extent::still(1024, 1024).displacement(seed)))
+        });
         contenders.push((label.clone(), notes(table, &scene, args.spp), realise));
     }
     let mut entries = Vec::new();

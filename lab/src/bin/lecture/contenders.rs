@@ -1,10 +1,9 @@
 //! Every sampler of the comparison, and how it renders. Another one is another entry of [`CONTENDERS`].
 
-use fsot::Site;
+use fsot::{Extent, Site};
 use fsot_lab::render::{Film, render, render_frame};
 use fsot_lab::samplers::{
-    OwenSobol, Pattern, Sampler, SeedPermutation, Shifted, TableSampler, WhiteNoise, displacement,
-    histogram_sampling,
+    OwenSobol, Pattern, Sampler, SeedPermutation, Shifted, TableSampler, WhiteNoise, histogram_sampling,
 };
 
 use crate::Failure;
@@ -103,11 +102,11 @@ impl<'a> Rendering<'a> {
     fn table(&self, maker: Maker, dims: usize, spp: u32, frames: usize) -> Result<TableSampler<'a>, Failure> {
         let table = self.shelf.table(Recipe { maker, dims, spp: spp as usize, frames })?;
         // Past the displacements of frames, pairs and samples: else one realisation is another a frame later.
-        Ok(TableSampler::new(table).shifted(displacement(1000 * self.repeat, self.tile())))
+        Ok(TableSampler::new(table).shifted(self.tile().displacement(1000 * self.repeat)))
     }
 
-    fn tile(&self) -> [usize; 2] {
-        [self.shelf.scale.tile; 2]
+    fn tile(&self) -> Extent {
+        Extent::still(self.shelf.scale.tile, self.shelf.scale.tile)
     }
 
     fn drift<S>(&self, table: S) -> Drift<S> {
@@ -179,12 +178,12 @@ impl<'a> Rendering<'a> {
 /// A table of one frame, elsewhere in every frame: how a purely spatial table is animated.
 struct Drift<S> {
     table: S,
-    tile: [usize; 2],
+    tile: Extent,
 }
 
 impl<S: Sampler> Sampler for Drift<S> {
     fn sample(&self, site: Site, sample: u32, dim: u32) -> f32 {
-        let Site { y, x, .. } = displacement(site.frame as u64, self.tile);
+        let Site { y, x, .. } = self.tile.displacement(site.frame as u64);
         self.table.sample(Site { frame: 0, y: site.y + y, x: site.x + x }, sample, dim)
     }
 }
@@ -192,14 +191,14 @@ impl<S: Sampler> Sampler for Drift<S> {
 /// A table of two dimensions that serves every pair of them, each from elsewhere in the tile.
 struct InPairs<S> {
     table: S,
-    tile: [usize; 2],
+    tile: Extent,
 }
 
 impl<S: Sampler> Sampler for InPairs<S> {
     fn sample(&self, site: Site, sample: u32, dim: u32) -> f32 {
         // Past the displacements of frames.
         let pair = u64::from(dim / 2);
-        let Site { y, x, .. } = displacement(if pair > 0 { pair + 100 } else { 0 }, self.tile);
+        let Site { y, x, .. } = self.tile.displacement(if pair > 0 { pair + 100 } else { 0 });
         self.table.sample(Site { y: site.y + y, x: site.x + x, ..site }, sample, dim % 2)
     }
 }
