@@ -12,6 +12,7 @@ use super::files::{Files, Record};
 use super::likeness::{Likeness, blur};
 use super::making::{Figures, make, tell};
 use super::page::{BLACK, LONGER_SIDE, sheet, sheet_size};
+use super::picture::{Reading, refusal};
 use super::set::PointSet;
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
@@ -23,6 +24,8 @@ Examples:
       a picture in 20000 dots
   fsot points stipple --picture face.png --points dots.csv
       the dots as a list, not drawn: x from left to right, y from top to bottom, each from 0 to 1
+  fsot points stipple --picture light.png --linear
+      a picture whose numbers are those of light, though its file doesn't say so
   fsot points stipple --picture stars.exr --bright --count 4096 --slices 32000 --seed 3
       bright where the picture is bright, with twice the work, in stippling.png
 
@@ -49,6 +52,8 @@ pub struct Arguments {
     #[arg(long, default_value_t = 0)]
     seed: u64,
     #[command(flatten)]
+    reading: Reading,
+    #[command(flatten)]
     files: Files,
     #[command(flatten)]
     shared: Shared,
@@ -56,11 +61,11 @@ pub struct Arguments {
 
 /// Makes it.
 pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
-    let Arguments { picture, count, bright, slices, seed, files, shared } = arguments;
+    let Arguments { picture, count, bright, slices, seed, reading, files, shared } = arguments;
     let places = files.check("stippling.png", &[picture])?;
     shared.start_threads()?;
-    let density = Density::open(picture, if *bright { Tone::Bright } else { Tone::Dark })
-        .map_err(|error| format!("{error} by --picture"))?;
+    let tone = if *bright { Tone::Bright } else { Tone::Dark };
+    let density = Density::open_with(picture, tone, &reading.options()).map_err(refusal)?;
     let config = Config::stippling(*count, density.clone()).with_seed(*seed);
     let made = make(config, *slices, &Progress::new(shared))?;
     let set = PointSet::new(made.table, vec![0; *count]);
@@ -70,6 +75,7 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
         "bright": bright,
         "slices": slices,
         "seed": seed,
+        "reading": reading,
     });
     let record = Record { kind: "stipple", flags, labels: vec!["ink".into()], run: made.work };
     places.write(&set, &record, || {
