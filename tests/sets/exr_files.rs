@@ -158,9 +158,9 @@ fn layers_are_chosen_by_name_or_named() {
     assert!(error.to_string().contains("but X, Y, Z: save"), "{error}");
 }
 
-/// A picture without symmetry.
+/// A smooth picture without symmetry, of 37 columns.
 fn ramp(i: usize) -> f32 {
-    (i * 7 % 64) as f32 / 64.0
+    (i % 37 + 2 * (i / 37)) as f32 / 128.0
 }
 
 #[test]
@@ -185,7 +185,7 @@ fn blocks_of_every_kind_are_put_together() {
             let picture = Picture::open(&path).unwrap();
             for (pixel, &light) in picture.pixels().iter().zip(&expected) {
                 // B44 is lossy for halves.
-                let near = (pixel[1] - light).abs() < 0.1;
+                let near = (pixel[1] - light).abs() < 0.03;
                 assert!(pixel[0] == light && near && pixel[2] == 1.0, "{pixel:?} {light} {encoding:?}");
             }
         }
@@ -333,7 +333,10 @@ fn windows_are_cropped_filled_and_limited() {
     let shown = |position: [i32; 2], size: (usize, usize)| {
         let window = IntegerBounds::new((position[0], position[1]), size);
         with_attributes(&path, [4, 2], ImageAttributes::new(window));
-        Density::open(&path, Tone::Bright).map(|density| density.values().to_vec())
+        // Weights of luminance add up to 1, but for the last bit.
+        let rounded = |value: &f32| (1000.0 * value).round() / 1000.0;
+        Density::open(&path, Tone::Bright)
+            .map(|density| density.values().iter().map(rounded).collect::<Vec<_>>())
     };
     assert_eq!(shown([1, 0], (2, 2)).unwrap(), [0.125, 0.25, 0.625, 0.75]);
     assert_eq!(shown([3, -1], (2, 3)).unwrap(), [0.0, 0.0, 0.375, 0.0, 0.875, 0.0]);

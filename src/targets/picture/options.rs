@@ -54,7 +54,8 @@ impl Default for PictureOptions {
 ///   them. Such as sRGB's, within 0.001, are read as sRGB.
 /// * `gAMA`: the power that it says, but sRGB's curve within 2 % of 1/2.2, which is what it means there.
 ///
-/// All else (HLG, printers' profiles) is refused in words. Colours become those of Rec. 709. EXR is linear;
+/// `mDCV` and `cLLI` are for screens, and change nothing. All else (HLG, printers' profiles) is refused in
+/// words. Colours become those of Rec. 709. EXR is linear;
 /// its `chromaticities` count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
