@@ -92,8 +92,9 @@ pub enum PictureError {
     },
     /// The pixels of a file are much wider than high, or higher than wide.
     #[error(
-        "the pixels of {} are {aspect} times as wide as high: save it with square ones, or within 1/64 to 64",
-        path.display()
+        "the pixels of {} are {} times as wide as high: save it with square ones, or within 1/64 to 64",
+        path.display(),
+        short(*aspect)
     )]
     Aspect {
         /// The file.
@@ -148,4 +149,10 @@ fn listed(names: &[String]) -> String {
         count @ ..=MOST => shown.join(if count == 2 { " and " } else { ", " }),
         count => format!("{} and {} more", shown.join(", "), count - MOST),
     }
+}
+
+/// Few digits.
+fn short(value: f64) -> String {
+    let is_plain = (1e-3..1e6).contains(&value.abs()) || value == 0.0 || !value.is_finite();
+    if is_plain { format!("{value:.4}") } else { format!("{value:.4e}") }
 }

@@ -24,8 +24,6 @@ Examples:
       a picture in 20000 dots
   fsot points stipple --picture face.png --points dots.csv
       the dots as a list, not drawn: x from left to right, y from top to bottom, each from 0 to 1
-  fsot points stipple --picture light.png --linear
-      a picture whose numbers are those of light, though its file doesn't say so
   fsot points stipple --picture stars.exr --bright --count 4096 --slices 32000 --seed 3
       bright where the picture is bright, with twice the work, in stippling.png
 

@@ -61,6 +61,11 @@ impl<const N: usize, F: Fn([f32; 4]) -> Result<[f32; N], f32>> Canvas<N, F> {
         Ok(Self { path: path.into(), size: coarse, values, convert, averaging })
     }
 
+    /// Whether such pixels leave no trace.
+    pub fn is_nothing(&self, pixel: [f32; 4]) -> bool {
+        (self.convert)(pixel) == Ok([0.0; N])
+    }
+
     /// Pixels of row `row`: those at `first`, `first + step`, ...; red, green, blue, multiplied by alpha, and
     /// alpha. Each pixel may come once.
     pub fn put(

@@ -2,10 +2,11 @@
 
 use std::collections::HashSet;
 use std::io::{BufRead, Seek};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use exr::block::UncompressedBlock;
-use exr::block::reader::ChunksReader;
+use exr::block::chunk::Chunk;
 use exr::error::Error;
 use exr::meta::BlockDescription;
 use exr::meta::header::Header;
@@ -65,15 +66,18 @@ pub(super) fn read<const N: usize>(
     let aspect = f64::from(header.shared_attributes.pixel_aspect);
     let mut canvas = Canvas::new(path, size, aspect, options, convert)?;
     let mut rows = Rows::new(header, &layer, matrix(header, path, options)?, path)?;
-    rows.surroundings(|row, first, pixels| canvas.put(row, [first, 1], pixels))?;
+    let empty = [0.0, 0.0, 0.0, if layer.alpha.is_some() { 0.0 } else { 1.0 }];
+    if !canvas.is_nothing(empty) {
+        rows.surroundings(empty, |row, first, pixels| canvas.put(row, [first, 1], pixels))?;
+    }
     let chunks = reader
         .filter_chunks(false, |_, tile, block| {
             block.layer == layer.part && tile.is_largest_resolution_level()
         })
         .map_err(refused)?;
     let mut seen = HashSet::new();
-    for block in chunks.sequential_decompressor(false) {
-        let block = block.map_err(refused)?;
+    for chunk in chunks {
+        let block = decompressed(chunk.map_err(refused)?, &meta).map_err(refused)?;
         let Vec2(x, y) = block.index.pixel_position;
         let is_expected = block.index.layer == layer.part && block.index.level == Vec2(0, 0);
         if !is_expected || !seen.insert([x, y]) {
@@ -82,6 +86,13 @@ pub(super) fn read<const N: usize>(
         rows.each(&block, |row, first, pixels| canvas.put(row, [first, 1], pixels))?;
     }
     canvas.finish(Orientation::default())
+}
+
+/// A block of pixels. Where overflow is checked, the decoder panics over damaged B44.
+fn decompressed(chunk: Chunk, meta: &MetaData) -> Result<UncompressedBlock> {
+    let decompress = || UncompressedBlock::decompress_chunk(chunk, meta, false);
+    let failed = |_| Err(Error::Invalid("a block cannot be unpacked".into()));
+    catch_unwind(AssertUnwindSafe(decompress)).unwrap_or_else(failed)
 }
 
 /// Refuses, by name, channels that have fewer samples than there are pixels.
@@ -160,8 +171,11 @@ impl<'a> Rows<'a> {
     }
 
     /// What is to be seen where there are no data: nothing, or black without alpha.
-    fn surroundings(&mut self, mut put: impl FnMut(usize, usize, &[[f32; 4]]) -> Done) -> Done {
-        let empty = [0.0, 0.0, 0.0, if self.layer.alpha.is_some() { 0.0 } else { 1.0 }];
+    fn surroundings(
+        &mut self,
+        empty: [f32; 4],
+        mut put: impl FnMut(usize, usize, &[[f32; 4]]) -> Done,
+    ) -> Done {
         self.pixels.resize(self.size[0], empty);
         let clamp = |at: i64, axis: usize| at.clamp(0, self.size[axis] as i64) as usize;
         let data = [self.header.layer_size.0, self.header.layer_size.1];
