@@ -55,7 +55,7 @@ pub(super) fn read<const N: usize>(
     let size = [window.size.width(), window.size.height()];
     check_size(path, size, options)?;
     check_size(path, [header.layer_size.width(), header.layer_size.height()], options)?;
-    let blocks: u64 = meta.headers.iter().map(|header| header.chunk_count as u64).sum();
+    let blocks = meta.headers.iter().fold(0, |sum: u64, part| sum.saturating_add(part.chunk_count as u64));
     if blocks.saturating_mul(LEAST_BLOCK) > length {
         return Err(invalid("the file is too short for its blocks"));
     }

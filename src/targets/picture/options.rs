@@ -23,10 +23,10 @@ pub struct PictureOptions {
     /// A picture of more pixels is averaged down to as many while it is read; `None` leaves every pixel as
     /// it is. At least 1 counts.
     ///
-    /// What is averaged is what draws points (a [density](super::Density), [inks](super::Inks)), or light
-    /// ([`Picture`](super::Picture)), by area: no mass is lost, and none moves farther than one of the
-    /// coarser pixels is wide. Sides become as many times shorter as each other; a whole number of times
-    /// where that divides both and leaves at least half of these pixels.
+    /// What is averaged is what draws points (a [density](crate::targets::Density),
+    /// [inks](crate::targets::Inks)), or light ([`Picture`](super::Picture)), by area: no mass is lost, and
+    /// none moves farther than one of the coarser pixels is wide. Sides become as many times shorter as each
+    /// other; a whole number of times where that divides both and leaves at least half of these pixels.
     ///
     /// The default is 2²²: the law along a direction has 2048 pieces at most, which 2048² pixels fill, and
     /// among a million points each has four pixels. Choose `None` where single texels matter, as in the map
