@@ -56,7 +56,7 @@
 //! # Features
 //!
 //! * `image` (default): densities from PNG and EXR files. Without it `targets::Picture` is absent, and the
-//!   crates `png` and `exr`.
+//!   crates `png`, `exr` and `moxcms`.
 //!
 //! # What it promises
 //!

@@ -3,6 +3,8 @@
 use allocation_counter::measure;
 use fsot::config::{Role, Work};
 use fsot::kernel::Kernel;
+#[cfg(feature = "image")]
+use fsot::targets::{Density, Inks, PictureOptions, Tone};
 use fsot::{Config, Extent, Objective, Optimizer, Until};
 
 /// Allocations of 64 steps and 4 sweeps, after 64 times as many have grown the buffers to the largest
@@ -102,5 +104,32 @@ fn memory_follows_its_law() {
                 peak as f64 / law
             );
         }
+
+/// Peaks of opening a picture of 8.4 megapixels, in bytes per pixel.
+#[cfg(feature = "image")]
+#[test]
+fn a_large_picture_is_opened_in_few_bytes_a_pixel() {
+    const SIZE: [u32; 2] = [3500, 2400];
+    let folder = tempfile::tempdir().unwrap();
+    let [png, deep, exr] = ["8.png", "16.png", "32.exr"].map(|name| folder.path().join(name));
+    let level = |x: u32, y: u32| (x * 7 + y * 3 + x * y / 64) % 256;
+    let light = |x: u32, y: u32| image::Rgb([level(x, y), level(y, x), level(x, x)]);
+    let bytes = |x, y| image::Rgb(light(x, y).0.map(|level| level as u8));
+    image::RgbImage::from_fn(SIZE[0], SIZE[1], bytes).save(&png).unwrap();
+    let words = |x, y| image::Rgb(light(x, y).0.map(|level| 257 * level as u16));
+    image::ImageBuffer::from_fn(SIZE[0], SIZE[1], words).save(&deep).unwrap();
+    let floats = |x, y| image::Rgb(light(x, y).0.map(|level| level as f32 / 255.0));
+    image::Rgb32FImage::from_fn(SIZE[0], SIZE[1], floats).save(&exr).unwrap();
+
+    let whole = PictureOptions { most_pixels: None, ..PictureOptions::default() };
+    for path in [&png, &deep, &exr] {
+        let peak = |open: &dyn Fn()| measure(open).bytes_max as f64 / f64::from(SIZE[0] * SIZE[1]);
+        let averaged = peak(&|| _ = Density::open(path, Tone::Dark).unwrap());
+        let full = peak(&|| _ = Density::open_with(path, Tone::Dark, &whole).unwrap());
+        let inks = peak(&|| _ = Inks::open(path).unwrap());
+        let full_inks = peak(&|| _ = Inks::open_with(path, &whole).unwrap());
+        println!("{averaged:.2} {full:.2} {inks:.2} {full_inks:.2} {}", path.display());
+        // Half of the pixels are kept, or all, at 4 bytes; or at 16 for four inks. The rest are rows.
+        assert!(averaged < 2.5 && full < 4.5 && inks < 8.5 && full_inks < 16.5, "{}", path.display());
     }
 }

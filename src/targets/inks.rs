@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::density::Density;
-use super::picture::Picture;
+use super::picture::{Picture, PictureOptions, Raster, read};
 use crate::error::{PictureError, TargetError};
 
 /// Density of each ink of a picture: cyan, magenta, yellow and black, 0 to 1 per pixel.
@@ -21,7 +21,7 @@ use crate::error::{PictureError, TargetError};
 pub struct Inks {
     /// Columns and rows.
     size: [usize; 2],
-    coverage: [Vec<f32>; 4],
+    coverage: Vec<[f32; 4]>,
 }
 
 impl Inks {
@@ -31,46 +31,49 @@ impl Inks {
     /// # Errors
     /// A picture without any ink, or with values that are not finite.
     pub fn from_picture(picture: &Picture) -> Result<Self, TargetError> {
-        let size = [picture.width(), picture.height()];
-        let mut coverage = [(); 4].map(|()| Vec::with_capacity(size[0] * size[1]));
-        for (index, &[red, green, blue, alpha]) in picture.pixels().iter().enumerate() {
-            let [x, y] = [index % size[0], index / size[0]];
-            let bad = [red, green, blue, alpha].into_iter().find(|value| !value.is_finite());
-            if let Some(value) = bad {
-                return Err(TargetError::BadDensity { x, y, value: value.into() });
-            }
-            let [red, green, blue] =
-                [red, green, blue].map(|light| (alpha * light + 1.0 - alpha).clamp(0.0, 1.0));
-            let lightest = red.max(green).max(blue);
-            let ink = |light: f32| if lightest > 0.0 { 1.0 - light / lightest } else { 0.0 };
-            let inks = [ink(red), ink(green), ink(blue), 1.0 - lightest];
-            coverage.iter_mut().zip(inks).for_each(|(coverage, ink)| coverage.push(ink));
-        }
+        Self::of_raster(picture.convert(separated)?)
+    }
+
+    /// The same of a PNG or EXR file, averaged down to 2²² pixels if there are more, ink by ink.
+    ///
+    /// The file is read row by row: it takes 16 bytes for each pixel that is kept, twice that to turn them,
+    /// and those of a few rows, or of one tile of an EXR file.
+    ///
+    /// # Errors
+    /// Whatever [`Picture::open`] and [`Inks::from_picture`] refuse.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, PictureError> {
+        Self::open_with(path, &PictureOptions::default())
+    }
+
+    /// The same, read in another way.
+    ///
+    /// # Errors
+    /// Whatever [`Picture::open_with`] and [`Inks::from_picture`] refuse.
+    pub fn open_with(path: impl AsRef<Path>, options: &PictureOptions) -> Result<Self, PictureError> {
+        let path = path.as_ref();
+        Self::of_raster(read(path, options, separated)?)
+            .map_err(|problem| PictureError::Density { path: path.into(), problem })
+    }
+
+    fn of_raster(raster: Raster<4>) -> Result<Self, TargetError> {
+        let Raster { size, values: coverage } = raster;
         if coverage.iter().flatten().all(|&ink| ink == 0.0) {
             return Err(TargetError::NoDensity { width: size[0], height: size[1] });
         }
         Ok(Self { size, coverage })
     }
 
-    /// The same of a PNG or EXR file.
-    ///
-    /// # Errors
-    /// Whatever [`Picture::open`] and [`Inks::from_picture`] refuse.
-    pub fn open(path: impl AsRef<Path>) -> Result<Self, PictureError> {
-        let path = path.as_ref();
-        Self::from_picture(&Picture::open(path)?)
-            .map_err(|problem| PictureError::Density { path: path.to_owned(), problem })
-    }
-
     /// Density of an ink (0 cyan, 1 magenta, 2 yellow, 3 black); `None` if there is none of it.
     pub fn density(&self, ink: usize) -> Option<Density> {
-        Density::new(self.size[0], self.size[1], self.coverage.get(ink)?.clone()).ok()
+        (ink < 4).then_some(())?;
+        let values = self.coverage.iter().map(|inks| inks[ink]).collect();
+        Density::new(self.size[0], self.size[1], values).ok()
     }
 
     /// Points of each ink if there are `count` in all, in proportion to what it covers.
     pub fn counts(&self, count: usize) -> [usize; 4] {
         let masses: [f64; 4] =
-            std::array::from_fn(|ink| self.coverage[ink].iter().map(|&value| f64::from(value)).sum());
+            std::array::from_fn(|ink| self.coverage.iter().map(|inks| f64::from(inks[ink])).sum());
         let total: f64 = masses.iter().sum();
         let (mut before, mut below) = (0, 0.0);
         masses.map(|mass| {
@@ -83,10 +86,21 @@ impl Inks {
 
     /// The density of some inks together, each with its mass; `None` if there is none of any.
     pub(crate) fn mixture(&self, inks: &[u32]) -> Option<Arc<Density>> {
-        let mut values = vec![0.0; self.size[0] * self.size[1]];
-        for coverage in inks.iter().filter_map(|&ink| self.coverage.get(ink as usize)) {
-            values.iter_mut().zip(coverage).for_each(|(sum, ink)| *sum += ink);
-        }
+        let sum = |coverage: &[f32; 4]| -> f32 {
+            inks.iter().filter_map(|&ink| coverage.get(ink as usize)).fold(0.0, |sum, ink| sum + ink)
+        };
+        let values = self.coverage.iter().map(sum).collect();
         Density::new(self.size[0], self.size[1], values).ok().map(Arc::new)
     }
+}
+
+/// Inks of a pixel on white paper, or the number that stands against them.
+fn separated([red, green, blue, alpha]: [f32; 4]) -> Result<[f32; 4], f32> {
+    if let Some(value) = [red, green, blue, alpha].into_iter().find(|value| !value.is_finite()) {
+        return Err(value);
+    }
+    let [red, green, blue] = [red, green, blue].map(|light| (light + 1.0 - alpha).clamp(0.0, 1.0));
+    let lightest = red.max(green).max(blue);
+    let ink = |light: f32| if lightest > 0.0 { 1.0 - light / lightest } else { 0.0 };
+    Ok([ink(red), ink(green), ink(blue), 1.0 - lightest])
 }

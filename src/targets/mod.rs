@@ -25,7 +25,11 @@ pub use cloud::PointCloud;
 pub use custom::{CustomTarget, Measure};
 pub use density::Density;
 #[cfg(feature = "image")]
-pub use {inks::Inks, picture::Picture, tone::Tone};
+pub use {
+    inks::Inks,
+    picture::{Picture, PictureOptions, Transfer},
+    tone::Tone,
+};
 
 /// The measure that a class's samples should resemble.
 ///

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::density::Density;
-use super::picture::Picture;
+use super::picture::{Picture, PictureOptions, Raster, read};
 use crate::error::{PictureError, TargetError};
 
 /// Which part of a picture draws points.
@@ -25,36 +25,60 @@ pub enum Tone {
     Bright,
 }
 
+impl Tone {
+    /// Density of a pixel, or the number that can be none.
+    fn density(self, [red, green, blue, alpha]: [f32; 4]) -> Result<[f32; 1], f32> {
+        let luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+        let value = match self {
+            // A comparison, so that NaN is not lost.
+            Tone::Dark if luminance > alpha => 0.0,
+            Tone::Dark => alpha - luminance,
+            Tone::Bright => luminance,
+        };
+        if value.is_finite() && value >= 0.0 { Ok([value]) } else { Err(value) }
+    }
+}
+
 impl Density {
     /// The density of a picture's luminance (Rec. 709 weights).
     ///
-    /// [`Tone::Dark`] counts what is missing to white, [`Tone::Bright`] the light; both times alpha, so that
-    /// nothing lies where a picture is transparent.
+    /// [`Tone::Bright`] counts the light, whatever its alpha; [`Tone::Dark`] what is missing to white where
+    /// the picture lies on white paper. Nothing lies where a picture is transparent and gives no light.
     ///
     /// # Errors
     /// A picture without any such density (all white, all black, all transparent), one with values that are
-    /// not finite.
+    /// not finite, or with less light than none.
     pub fn from_picture(picture: &Picture, tone: Tone) -> Result<Self, TargetError> {
-        let values = picture.pixels().iter().map(|&[red, green, blue, alpha]| {
-            let luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
-            alpha
-                * match tone {
-                    // A comparison, so that NaN is not lost.
-                    Tone::Dark if luminance > 1.0 => 0.0,
-                    Tone::Dark => 1.0 - luminance,
-                    Tone::Bright => luminance,
-                }
-        });
-        Self::new(picture.width(), picture.height(), values.collect())
+        Self::of_raster(picture.convert(|pixel| tone.density(pixel))?)
     }
 
-    /// The same of a PNG or EXR file.
+    /// The same of a PNG or EXR file, averaged down to 2²² pixels if there are more.
+    ///
+    /// The file is read row by row: it takes 4 bytes for each pixel that is kept, twice that to turn them,
+    /// and those of a few rows, or of one tile of an EXR file.
     ///
     /// # Errors
     /// Whatever [`Picture::open`] and [`Density::from_picture`] refuse.
     pub fn open(path: impl AsRef<Path>, tone: Tone) -> Result<Self, PictureError> {
+        Self::open_with(path, tone, &PictureOptions::default())
+    }
+
+    /// The same, read in another way.
+    ///
+    /// # Errors
+    /// Whatever [`Picture::open_with`] and [`Density::from_picture`] refuse.
+    pub fn open_with(
+        path: impl AsRef<Path>,
+        tone: Tone,
+        options: &PictureOptions,
+    ) -> Result<Self, PictureError> {
         let path = path.as_ref();
-        Self::from_picture(&Picture::open(path)?, tone)
-            .map_err(|problem| PictureError::Density { path: path.to_owned(), problem })
+        let raster = read(path, options, |pixel| tone.density(pixel))?;
+        Self::of_raster(raster).map_err(|problem| PictureError::Density { path: path.into(), problem })
+    }
+
+    fn of_raster(raster: Raster<1>) -> Result<Self, TargetError> {
+        let Raster { size: [width, height], values } = raster;
+        Self::new(width, height, values.into_flattened())
     }
 }

@@ -4,9 +4,13 @@ mod classes;
 mod custom;
 mod density;
 #[cfg(feature = "image")]
+mod exr_files;
+#[cfg(feature = "image")]
 mod picture_files;
 #[cfg(feature = "image")]
 mod pictures;
+#[cfg(feature = "image")]
+mod png_files;
 mod progressive;
 mod refusals;
 

@@ -14,6 +14,7 @@ use super::files::{Files, Record};
 use super::likeness::Likeness;
 use super::making::{Figures, make, tell};
 use super::page::{sheet, sheet_size};
+use super::picture::{Reading, refusal};
 use super::set::PointSet;
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
@@ -46,6 +47,8 @@ pub struct Arguments {
     #[arg(long, default_value_t = 0)]
     seed: u64,
     #[command(flatten)]
+    reading: Reading,
+    #[command(flatten)]
     files: Files,
     #[command(flatten)]
     shared: Shared,
@@ -56,10 +59,10 @@ const INKS: [[u8; 3]; 4] = [[0, 165, 220], [225, 20, 130], [250, 225, 0], [25, 2
 
 /// Makes it.
 pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
-    let Arguments { picture, count, slices, seed, files, shared } = arguments;
+    let Arguments { picture, count, slices, seed, reading, files, shared } = arguments;
     let places = files.check("color_stippling.png", &[picture])?;
     shared.start_threads()?;
-    let inks = Inks::open(picture).map_err(|error| format!("{error} by --picture"))?;
+    let inks = Inks::open_with(picture, &reading.options()).map_err(refusal)?;
     let config = Config::color_stippling(*count, &inks).with_seed(*seed);
     let sets = config.terms.len();
     let made = make(config, *slices, &Progress::new(shared))?;
@@ -70,6 +73,7 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
         "count": count,
         "slices": slices,
         "seed": seed,
+        "reading": reading,
     });
     let record =
         Record { kind: "color-stipple", flags, labels: NAMES.map(String::from).into(), run: made.work };

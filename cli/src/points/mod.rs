@@ -5,6 +5,7 @@ mod files;
 mod likeness;
 mod making;
 mod page;
+mod picture;
 mod progressive;
 mod set;
 mod stipple;

@@ -12,6 +12,7 @@ use super::files::{Files, Record};
 use super::likeness::{Likeness, blur};
 use super::making::{Figures, make, tell};
 use super::page::{BLACK, LONGER_SIDE, sheet, sheet_size};
+use super::picture::{Reading, refusal};
 use super::set::PointSet;
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
@@ -49,6 +50,8 @@ pub struct Arguments {
     #[arg(long, default_value_t = 0)]
     seed: u64,
     #[command(flatten)]
+    reading: Reading,
+    #[command(flatten)]
     files: Files,
     #[command(flatten)]
     shared: Shared,
@@ -56,11 +59,11 @@ pub struct Arguments {
 
 /// Makes it.
 pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
-    let Arguments { picture, count, bright, slices, seed, files, shared } = arguments;
+    let Arguments { picture, count, bright, slices, seed, reading, files, shared } = arguments;
     let places = files.check("stippling.png", &[picture])?;
     shared.start_threads()?;
-    let density = Density::open(picture, if *bright { Tone::Bright } else { Tone::Dark })
-        .map_err(|error| format!("{error} by --picture"))?;
+    let tone = if *bright { Tone::Bright } else { Tone::Dark };
+    let density = Density::open_with(picture, tone, &reading.options()).map_err(refusal)?;
     let config = Config::stippling(*count, density.clone()).with_seed(*seed);
     let made = make(config, *slices, &Progress::new(shared))?;
     let set = PointSet::new(made.table, vec![0; *count]);
@@ -70,6 +73,7 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
         "bright": bright,
         "slices": slices,
         "seed": seed,
+        "reading": reading,
     });
     let record = Record { kind: "stipple", flags, labels: vec!["ink".into()], run: made.work };
     places.write(&set, &record, || {

@@ -2,6 +2,7 @@
 
 mod mistakes;
 mod outputs;
+mod pictures;
 mod points;
 mod printing;
 mod runs;

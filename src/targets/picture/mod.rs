@@ -1,20 +1,32 @@
 //! Pictures in linear light, and the files that they come from.
 
+mod canvas;
+mod exif;
 mod exr;
+mod icc;
+mod layers;
+mod light;
+mod options;
 mod png;
+mod primaries;
 mod transfer;
 
 use std::fs::File;
 use std::io::{BufReader, Read, Seek};
 use std::path::Path;
 
+pub(super) use canvas::Raster;
+pub use options::{PictureOptions, Transfer};
+
 use super::density::Density;
 use crate::error::{PictureError, TargetError};
 
-/// A picture in linear light: red, green, blue and straight alpha of every pixel, row by row from the top.
+/// A picture in linear light: red, green, blue, each multiplied by alpha, and alpha of every pixel, row by
+/// row from the top.
 ///
-/// 1 is the light of white paper, and full cover. Light beyond, as of lamps, is kept; so are values that are
-/// not finite, which densities refuse.
+/// Colours are those of Rec. 709; 1 is the light of white paper, and full cover. The product is what comes
+/// from a pixel: light without cover, as of a flame, is light. Light beyond 1, as of lamps, is kept; so are
+/// values that are not finite, which densities refuse.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     width: usize,
@@ -23,7 +35,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// A picture of these pixels.
+    /// A picture of these pixels: red, green and blue, each multiplied by alpha, and alpha.
     ///
     /// # Errors
     /// A side of 0 or beyond 65535, a wrong number of pixels.
@@ -39,12 +51,19 @@ impl Picture {
     /// The picture of a file: PNG of any depth, grey, in colours or with a palette, or EXR. Its first bytes
     /// say what it is, not its name.
     ///
-    /// PNG is taken for sRGB. EXR is linear, and its colours, which are multiplied by alpha, are divided by
-    /// it; of several parts the first with channels `R`, `G` and `B` is read.
+    /// More than 2²² pixels are averaged down to as many: see [`PictureOptions::most_pixels`], and
+    /// [`Transfer`] for what the numbers of a file mean. Pixels that a file calls wider than high (`pHYs` of
+    /// PNG, `pixelAspectRatio` of EXR, by more than 0.5 %) become square, by stretching.
+    ///
+    /// PNG: of an animation, the picture for those who show none; turned as its `eXIf` says; `bKGD` paints
+    /// nothing. EXR: what lies within the display window, and around the data nothing, or black where there
+    /// is no alpha. The channels are `R`, `G` and `B`, or `Y` alone, of the first part that has them, or
+    /// those of a layer: see [`PictureOptions::layer`].
     ///
     /// # Errors
     /// A file that cannot be read, that is neither PNG nor EXR, or that is damaged; a side beyond 65535, more
-    /// than 2²⁷ pixels.
+    /// than 2²⁷ pixels; colours that are not understood; an EXR file without such channels, or with several
+    /// layers; no memory.
     ///
     /// ```
     /// use fsot::targets::{Density, Picture, Tone};
@@ -55,19 +74,16 @@ impl Picture {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn open(path: impl AsRef<Path>) -> Result<Self, PictureError> {
-        let path = path.as_ref();
-        let unreadable = |source| PictureError::Read { path: path.into(), source };
-        let mut file = BufReader::new(File::open(path).map_err(unreadable)?);
-        let mut start = Vec::new();
-        file.by_ref().take(8).read_to_end(&mut start).map_err(unreadable)?;
-        file.rewind().map_err(unreadable)?;
-        if start == png::SIGNATURE {
-            png::read(file, path)
-        } else if start.starts_with(&exr::SIGNATURE) {
-            exr::read(file, path)
-        } else {
-            Err(PictureError::Format { path: path.into(), start })
-        }
+        Self::open_with(path, &PictureOptions::default())
+    }
+
+    /// The same, read in another way.
+    ///
+    /// # Errors
+    /// Those of [`Picture::open`], with the limit of the options, and no layer of the name.
+    pub fn open_with(path: impl AsRef<Path>, options: &PictureOptions) -> Result<Self, PictureError> {
+        let Raster { size: [width, height], values } = read(path.as_ref(), options, Ok)?;
+        Ok(Self { width, height, pixels: values })
     }
 
     /// Pixels in a row.
@@ -80,20 +96,44 @@ impl Picture {
         self.height
     }
 
-    /// Red, green, blue and alpha, row by row from the top.
+    /// Red, green and blue, multiplied by alpha, and alpha, row by row from the top.
     pub fn pixels(&self) -> &[[f32; 4]] {
         &self.pixels
     }
+
+    /// `N` numbers of every pixel.
+    pub(super) fn convert<const N: usize>(
+        &self,
+        convert: impl Fn([f32; 4]) -> Result<[f32; N], f32>,
+    ) -> Result<Raster<N>, TargetError> {
+        let values = self.pixels.iter().enumerate().map(|(index, &pixel)| {
+            convert(pixel).map_err(|value| {
+                let [x, y] = [index % self.width, index / self.width];
+                TargetError::BadDensity { x, y, value: value.into() }
+            })
+        });
+        Ok(Raster { size: [self.width, self.height], values: values.collect::<Result<_, _>>()? })
+    }
 }
 
-/// Refuses what a file says of its size before memory is set aside for it.
-fn check_size(path: &Path, [width, height]: [usize; 2]) -> Result<(), PictureError> {
-    /// 2 GiB of pixels.
-    const MOST: usize = 1 << 27;
-    Density::check_size([width, height])
-        .map_err(|problem| PictureError::Density { path: path.into(), problem })?;
-    if width * height > MOST {
-        return Err(PictureError::TooLarge { path: path.into(), width, height, most: MOST });
+/// What `convert` makes of the pixels of a file.
+pub(super) fn read<const N: usize>(
+    path: &Path,
+    options: &PictureOptions,
+    convert: impl Fn([f32; 4]) -> Result<[f32; N], f32>,
+) -> Result<Raster<N>, PictureError> {
+    let unreadable = |source| PictureError::Read { path: path.into(), source };
+    let file = File::open(path).map_err(unreadable)?;
+    let length = file.metadata().map_err(unreadable)?.len();
+    let mut file = BufReader::new(file);
+    let mut start = Vec::new();
+    file.by_ref().take(8).read_to_end(&mut start).map_err(unreadable)?;
+    file.rewind().map_err(unreadable)?;
+    if start == png::SIGNATURE {
+        png::read(file, path, options, convert)
+    } else if start.starts_with(&exr::SIGNATURE) {
+        exr::read(file, length, path, options, convert)
+    } else {
+        Err(PictureError::Format { path: path.into(), start })
     }
-    Ok(())
 }

@@ -1,11 +1,14 @@
-//! PNG: 1 to 16 bits, grey, colours or a palette, with or without alpha.
+//! PNG: 1 to 16 bits, grey, colours or a palette, with or without alpha, row by row.
 
 use std::io::{BufRead, Seek};
 use std::path::Path;
 
-use png::{BitDepth, ColorType, Decoder, DecodingError, Info, Limits, Transformations};
+use png::{BitDepth, ColorType, Decoder, DecodingError, Info, Limits, Reader, Transformations};
 
-use super::{Picture, check_size, transfer};
+use super::canvas::{Canvas, Raster, check_size, reserve};
+use super::exif::Orientation;
+use super::light::Light;
+use super::options::PictureOptions;
 use crate::error::PictureError;
 
 /// The first bytes of any PNG file.
@@ -14,7 +17,16 @@ pub(super) const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1a\n";
 /// For what is not the pixels themselves, such as profiles.
 const MOST_BYTES: usize = 64 << 20;
 
-pub(super) fn read(file: impl BufRead + Seek, path: &Path) -> Result<Picture, PictureError> {
+/// The passes of an interlaced file: their first column and row, and the steps between columns and rows.
+const PASSES: [[usize; 4]; 7] =
+    [[0, 0, 8, 8], [4, 0, 8, 8], [0, 4, 4, 8], [2, 0, 4, 4], [0, 2, 2, 4], [1, 0, 2, 2], [0, 1, 1, 2]];
+
+pub(super) fn read<const N: usize>(
+    file: impl BufRead + Seek,
+    path: &Path,
+    options: &PictureOptions,
+    convert: impl Fn([f32; 4]) -> Result<[f32; N], f32>,
+) -> Result<Raster<N>, PictureError> {
     let refused = |source: DecodingError| PictureError::Png { path: path.into(), source };
     let mut decoder = Decoder::new_with_limits(file, Limits { bytes: MOST_BYTES });
     decoder.set_ignore_text_chunk(true);
@@ -22,56 +34,106 @@ pub(super) fn read(file: impl BufRead + Seek, path: &Path) -> Result<Picture, Pi
     decoder.set_transformations(Transformations::EXPAND);
     let header = decoder.read_header_info().map_err(refused)?;
     let [width, height] = [header.width as usize, header.height as usize];
-    check_size(path, [width, height])?;
+    check_size(path, [width, height], options)?;
     let mut reader = decoder.read_info().map_err(refused)?;
     let (color, depth) = reader.output_color_type();
-    let Some(length) = reader.output_buffer_size() else {
-        return Err(refused(DecodingError::LimitsExceeded));
-    };
-    let mut bytes = vec![0; length];
-    reader.next_frame(&mut bytes).map_err(refused)?;
+    let light = Light::of_png(reader.info(), options.transfer)
+        .map_err(|what| PictureError::Encoding { path: path.into(), what })?;
+    let mut canvas = Canvas::new(path, [width, height], aspect(reader.info()), options, convert)?;
 
-    let light = light(reader.info());
-    let pixels = match depth {
-        BitDepth::Sixteen => {
-            let samples: Vec<u16> =
-                bytes.as_chunks().0.iter().map(|&pair| u16::from_be_bytes(pair)).collect();
-            pixels(&samples, color, u16::MAX, light)
+    let light = Samples::new(&light, color, depth);
+    let mut pixels = Vec::new();
+    reserve(path, &mut pixels, width)?;
+    let mut bytes = vec![0; reader.output_line_size(width as u32).unwrap_or(0)];
+    let whole = [[0, 0, 1, 1]];
+    let passes: &[_] = if reader.info().interlaced { &PASSES } else { &whole };
+    for &[left, top, step, row_step] in passes {
+        let columns = width.saturating_sub(left).div_ceil(step);
+        if columns == 0 {
+            continue;
         }
-        _ => pixels(&bytes, color, u8::MAX, light),
-    };
-    Picture::new(width, height, pixels)
-        .map_err(|problem| PictureError::Density { path: path.into(), problem })
+        for row in (top..height).step_by(row_step) {
+            if reader.read_row(&mut bytes).map_err(refused)?.is_none() {
+                return Err(refused(DecodingError::LimitsExceeded));
+            }
+            pixels.clear();
+            light.extend(&mut pixels, &bytes[..columns * light.pixel_bytes]);
+            canvas.put(row, [left, step], &pixels)?;
+        }
+    }
+    // What follows the last row is checked too.
+    reader.read_row(&mut bytes).map_err(refused)?;
+    canvas.finish(orientation(&mut reader))
 }
 
-/// What the file says about its colours.
-fn light(_: &Info) -> impl Fn(f32) -> f32 {
-    transfer::srgb
+/// How many times as wide as they are high the pixels are.
+fn aspect(info: &Info) -> f64 {
+    match info.pixel_dims {
+        Some(sides) if sides.xppu > 0 && sides.yppu > 0 => f64::from(sides.yppu) / f64::from(sides.xppu),
+        _ => 1.0,
+    }
 }
 
-/// Red, green, blue and alpha of samples up to `most`.
-fn pixels<S: Copy + Into<u16>>(
-    samples: &[S],
+/// Which way up, be it said before the pixels or after them. What is damaged there hurts no pixel.
+fn orientation(reader: &mut Reader<impl BufRead + Seek>) -> Orientation {
+    if reader.info().exif_metadata.is_none() {
+        _ = reader.finish();
+    }
+    reader.info().exif_metadata.as_deref().map(Orientation::of_exif).unwrap_or_default()
+}
+
+/// From the bytes of a row to pixels.
+struct Samples<'a> {
+    light: &'a Light,
     color: ColorType,
-    most: S,
-    light: impl Fn(f32) -> f32,
-) -> Vec<[f32; 4]> {
-    let is_grey = color.samples() < 3;
-    let unit = f32::from(most.into());
-    // Grey is multiplied and colours are divided, which differs in the last bit: so did the crate `image`,
-    // which read files before, and a seed promises its points.
-    let share = |sample: u16| match is_grey {
-        true => f32::from(sample) * unit.recip(),
-        false => f32::from(sample) / unit,
-    };
-    let lights: Vec<f32> = (0..=most.into()).map(|sample| light(share(sample))).collect();
-    let light = |sample: S| lights[usize::from(sample.into())];
-    let alpha = |sample: S| share(sample.into());
-    let pixel = |samples: &[S]| match *samples {
-        [grey] => [light(grey), light(grey), light(grey), 1.0],
-        [grey, cover] => [light(grey), light(grey), light(grey), alpha(cover)],
-        [red, green, blue, cover] => [light(red), light(green), light(blue), alpha(cover)],
-        _ => [light(samples[0]), light(samples[1]), light(samples[2]), 1.0],
-    };
-    samples.chunks_exact(color.samples()).map(pixel).collect()
+    is_deep: bool,
+    pixel_bytes: usize,
+    /// Light of each level of red, green and blue.
+    levels: [Vec<f32>; 3],
+    /// Share of the highest level.
+    shares: Vec<f32>,
+}
+
+impl<'a> Samples<'a> {
+    fn new(light: &'a Light, color: ColorType, depth: BitDepth) -> Self {
+        let is_deep = depth == BitDepth::Sixteen;
+        let most = if is_deep { u16::MAX } else { u8::MAX.into() };
+        let unit = f32::from(most);
+        // Grey is multiplied and colours are divided, which differs in the last bit: so did the crate
+        // `image`, which read files before, and a seed promises its points.
+        let share = |sample: u16| match color.samples() < 3 {
+            true => f32::from(sample) * unit.recip(),
+            false => f32::from(sample) / unit,
+        };
+        let shares: Vec<f32> = (0..=most).map(share).collect();
+        let levels =
+            [0, 1, 2].map(|channel| shares.iter().map(|&share| (light.curves[channel])(share)).collect());
+        let pixel_bytes = color.samples() * if is_deep { 2 } else { 1 };
+        Self { light, color, is_deep, pixel_bytes, levels, shares }
+    }
+
+    /// Adds pixels: red, green and blue, multiplied by alpha, and alpha.
+    fn extend(&self, pixels: &mut Vec<[f32; 4]>, bytes: &[u8]) {
+        let level = |bytes: &[u8], at: usize| match self.is_deep {
+            true => usize::from(u16::from_be_bytes([bytes[2 * at], bytes[2 * at + 1]])),
+            false => usize::from(bytes[at]),
+        };
+        let [red, green, blue] = &self.levels;
+        let pixel = |bytes: &[u8]| {
+            let level = |at| level(bytes, at);
+            let grey = |at| [red, green, blue].map(|channel| channel[level(at)]);
+            let colors = || [red[level(0)], green[level(1)], blue[level(2)]];
+            match self.color {
+                ColorType::Grayscale | ColorType::Indexed => (grey(0), 1.0),
+                ColorType::GrayscaleAlpha => (grey(0), self.shares[level(1)]),
+                ColorType::Rgb => (colors(), 1.0),
+                ColorType::Rgba => (colors(), self.shares[level(3)]),
+            }
+        };
+        pixels.extend(bytes.chunks_exact(self.pixel_bytes).map(|bytes| {
+            let (colors, alpha) = pixel(bytes);
+            let [red, green, blue] = self.light.in_rec_709(colors).map(|light| light * alpha);
+            [red, green, blue, alpha]
+        }));
+    }
 }
