@@ -137,6 +137,14 @@ struct Raced {
 }
 
 #[test]
+fn demand_has_a_row_per_share() {
+    let text = printed(env!("CARGO_BIN_EXE_demand"), &["--quick"]);
+    // Three tables, each whole, in one dimension, and in four shares of two kinds.
+    assert_eq!(text.matches(" % |\n").count(), 3 * (2 + 4 * 2), "{text}");
+    assert_eq!(text.matches("| all | 100.0 % | 100.0 % | 100.0 % |").count(), 3, "{text}");
+}
+
+#[test]
 fn race_has_curves_and_a_plot() {
     let home = TempDir::new().unwrap();
     let out = home.path().to_str().unwrap();
