@@ -17,29 +17,38 @@ impl Objective {
     pub(crate) fn place(&self, points: &mut [f32]) {
         let mut terms: Vec<&PlannedTerm> =
             self.terms.iter().filter(|term| term.spec.role == Role::Descend).collect();
-        if terms.iter().all(|term| term.spec.target.warp().is_none()) {
+        terms.retain(|term| term.spec.target.has_warp());
+        if terms.is_empty() {
             return;
         }
         terms.sort_by(|a, b| b.family.mean_size().total_cmp(&a.family.mean_size()));
         let noise = points.to_vec();
+        // From the smallest classes on, each coordinate once.
+        let mut is_placed = vec![false; points.len()];
         let (mut samples, mut place) = (Vec::new(), Vec::new());
-        for term in terms {
-            let Some(warp) = term.spec.target.warp() else { continue };
+        for term in terms.into_iter().rev() {
+            let mut warp = None;
             let steps = kronecker_steps(term.spec.dims.len());
-            for index in 0..term.family.visits() {
+            for index in (0..term.family.visits()).rev() {
                 term.family.select(term.family.visited_member(index), 0.0, &mut samples);
                 let Some(&origin) = samples.first() else { continue };
                 let shift = |dim: &usize| f64::from(noise[origin as usize * self.dims + dim]);
                 let apart = JITTER * (samples.len() as f64).powf(-1.0 / steps.len() as f64);
                 for (rank, &sample) in samples.iter().enumerate() {
                     let first = sample as usize * self.dims;
+                    if term.spec.dims.iter().all(|dim| is_placed[first + dim]) {
+                        continue;
+                    }
+                    let Some(warp) = warp.get_or_insert_with(|| term.spec.target.warp()) else { continue };
                     let jitter = |dim: &usize| apart * f64::from(noise[first + dim]);
                     let along = term.spec.dims.iter().map(|dim| shift(dim) + jitter(dim)).zip(&steps);
                     place.clear();
                     place.extend(along.map(|(start, step)| (start + rank as f64 * step).fract()));
                     warp.place(&mut place);
                     for (dim, place) in term.spec.dims.iter().zip(&place) {
-                        points[first + dim] = Domain::Interval.admit(*place as f32);
+                        if !std::mem::replace(&mut is_placed[first + dim], true) {
+                            points[first + dim] = Domain::Interval.admit(*place as f32);
+                        }
                     }
                 }
             }

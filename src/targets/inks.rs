@@ -1,9 +1,9 @@
 //! Pictures as inks: cyan, magenta, yellow and black.
 
 use std::path::Path;
-use std::sync::Arc;
 
-use super::density::Density;
+use super::density::{Density, with_room};
+use super::density_sum::DensitySum;
 use super::picture::Picture;
 use crate::error::{PictureError, TargetError};
 
@@ -19,9 +19,8 @@ use crate::error::{PictureError, TargetError};
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Inks {
-    /// Columns and rows.
-    size: [usize; 2],
-    coverage: [Vec<f32>; 4],
+    /// None of an ink that covers nothing.
+    coverage: [Option<Density>; 4],
 }
 
 impl Inks {
@@ -32,7 +31,8 @@ impl Inks {
     /// A picture without any ink, or with values that are not finite.
     pub fn from_picture(picture: &Picture) -> Result<Self, TargetError> {
         let size = [picture.width(), picture.height()];
-        let mut coverage = [(); 4].map(|()| Vec::with_capacity(size[0] * size[1]));
+        let room = || with_room(picture.pixels().len());
+        let mut coverage = [room()?, room()?, room()?, room()?];
         for (index, &[red, green, blue, alpha]) in picture.pixels().iter().enumerate() {
             let [x, y] = [index % size[0], index / size[0]];
             let bad = [red, green, blue, alpha].into_iter().find(|value| !value.is_finite());
@@ -46,10 +46,11 @@ impl Inks {
             let inks = [ink(red), ink(green), ink(blue), 1.0 - lightest];
             coverage.iter_mut().zip(inks).for_each(|(coverage, ink)| coverage.push(ink));
         }
-        if coverage.iter().flatten().all(|&ink| ink == 0.0) {
-            return Err(TargetError::NoDensity { width: size[0], height: size[1] });
+        let coverage = coverage.map(|values| Density::new(size[0], size[1], values).ok());
+        match coverage.iter().all(Option::is_none) {
+            true => Err(TargetError::NoDensity { width: size[0], height: size[1] }),
+            false => Ok(Self { coverage }),
         }
-        Ok(Self { size, coverage })
     }
 
     /// The same of a PNG or EXR file.
@@ -64,13 +65,13 @@ impl Inks {
 
     /// Density of an ink (0 cyan, 1 magenta, 2 yellow, 3 black); `None` if there is none of it.
     pub fn density(&self, ink: usize) -> Option<Density> {
-        Density::new(self.size[0], self.size[1], self.coverage.get(ink)?.clone()).ok()
+        self.coverage.get(ink)?.clone()
     }
 
     /// Points of each ink if there are `count` in all, in proportion to what it covers.
     pub fn counts(&self, count: usize) -> [usize; 4] {
         let masses: [f64; 4] =
-            std::array::from_fn(|ink| self.coverage[ink].iter().map(|&value| f64::from(value)).sum());
+            std::array::from_fn(|ink| self.coverage[ink].as_ref().map_or(0.0, Density::mass));
         let total: f64 = masses.iter().sum();
         let (mut before, mut below) = (0, 0.0);
         masses.map(|mass| {
@@ -81,12 +82,9 @@ impl Inks {
         })
     }
 
-    /// The density of some inks together, each with its mass; `None` if there is none of any.
-    pub(crate) fn mixture(&self, inks: &[u32]) -> Option<Arc<Density>> {
-        let mut values = vec![0.0; self.size[0] * self.size[1]];
-        for coverage in inks.iter().filter_map(|&ink| self.coverage.get(ink as usize)) {
-            values.iter_mut().zip(coverage).for_each(|(sum, ink)| *sum += ink);
-        }
-        Density::new(self.size[0], self.size[1], values).ok().map(Arc::new)
+    /// Some inks together; `None` if there is none of any.
+    pub(crate) fn together(&self, inks: &[u32]) -> Option<DensitySum> {
+        let parts = inks.iter().filter_map(|&ink| self.density(ink as usize)).collect();
+        DensitySum::new(parts).ok()
     }
 }
