@@ -62,7 +62,8 @@ fn groups(targets: &[(usize, &Target, usize)]) -> Vec<Vec<(usize, usize)>> {
         if *target == Target::UniformCube {
             continue;
         }
-        let is_same = |known: &&mut (usize, usize)| (targets[known.0].0, targets[known.0].1) == (dims, target);
+        let is_same =
+            |known: &&mut (usize, usize)| (targets[known.0].0, targets[known.0].1) == (dims, target);
         if let Some(known) = groups.iter_mut().flatten().find(is_same) {
             known.1 = known.1.max(points);
             continue;

@@ -65,12 +65,14 @@ impl TargetBank {
         let Some(&(target, _)) = asked.first() else { return Ok(Vec::new()) };
         let theta = directions(dims, target);
         // The law belongs to the direction as it will be used, rounded.
-        let exact: Vec<Vec<f64>> =
-            theta.chunks(dims).map(|theta| theta.iter().map(|&component| component.into()).collect()).collect();
+        let exact: Vec<Vec<f64>> = theta
+            .chunks(dims)
+            .map(|theta| theta.iter().map(|&component| component.into()).collect())
+            .collect();
         if !target.densities().is_empty() {
-            let densities = asked.iter().map(|&(target, points)| {
-                Asked { densities: target.densities(), points: Some(points) }
-            });
+            let densities = asked
+                .iter()
+                .map(|&(target, points)| Asked { densities: target.densities(), points: Some(points) });
             let laws = projections::laws(&densities.collect::<Vec<_>>(), &exact, watch)?;
             return Ok(laws.into_iter().map(|laws| Self { theta: theta.clone(), dims, laws }).collect());
         }
@@ -128,6 +130,7 @@ fn directions(dims: usize, target: &Target) -> Vec<f32> {
     };
     let axis = |axis: usize| (0..dims).map(|dim| if dim == axis { 1.0 } else { 0.0 }).collect();
     let all = directions.into_iter().chain((0..dims).map(axis));
-    let scaled = |theta: Vec<f64>| theta.into_iter().zip(&scales).map(|(x, scale)| (x * scale) as f32).collect();
+    let scaled =
+        |theta: Vec<f64>| theta.into_iter().zip(&scales).map(|(x, scale)| (x * scale) as f32).collect();
     all.flat_map::<Vec<f32>, _>(scaled).collect()
 }

@@ -161,8 +161,10 @@ impl Objective {
             return Err(ConfigError::NoDemand);
         }
         let largest = |family: &FilterFamily| family.sizes().last().copied().unwrap_or(1);
-        let targets: Vec<_> =
-            checked.iter().map(|(_, term, family)| (term.dims.len(), &term.target, largest(family))).collect();
+        let targets: Vec<_> = checked
+            .iter()
+            .map(|(_, term, family)| (term.dims.len(), &term.target, largest(family)))
+            .collect();
         let mut banks = Banks::default();
         banks.plan(&targets, &mut Watch::new(observe)).map_err(|(at, problem)| match problem {
             BankError::Target(problem) => TermError::from(problem).of(checked[at].0),

@@ -1,4 +1,4 @@
-//! Where an optimisation starts, if not from white noise.
+//! Where an optimisation starts, if not from white noise, and what is done at its end.
 
 use super::Objective;
 use super::plan::PlannedTerm;
@@ -50,6 +50,35 @@ impl Objective {
                             points[first + dim] = Domain::Interval.admit(*place as f32);
                         }
                     }
+                }
+            }
+        }
+    }
+
+    /// Brings points that an optimisation has left just beside a bright pixel of their density into it: each
+    /// by the smallest of its classes that have one.
+    pub(crate) fn settle(&self, points: &mut [f32]) {
+        let has_pixels =
+            |term: &&PlannedTerm| term.spec.role == Role::Descend && !term.spec.target.densities().is_empty();
+        let mut terms: Vec<&PlannedTerm> = self.terms.iter().filter(has_pixels).collect();
+        // Where pixels have classes of their own, a sample has too many to follow one.
+        terms.retain(|term| !term.family.is_per_site() && !term.family.has_levels());
+        terms.sort_by(|a, b| a.family.mean_size().total_cmp(&b.family.mean_size()));
+        let mut is_settled = vec![false; if terms.is_empty() { 0 } else { points.len() }];
+        let mut samples = Vec::new();
+        for term in terms {
+            let &[x, y] = term.spec.dims.as_slice() else { continue };
+            for index in 0..term.family.visits() {
+                term.family.select(term.family.visited_member(index), 0.0, &mut samples);
+                let places = |sample: &u32| [x, y].map(|dim| *sample as usize * self.dims + dim);
+                if samples.iter().flat_map(places).any(|place| is_settled[place]) {
+                    continue;
+                }
+                let mut class: Vec<[f32; 2]> =
+                    samples.iter().map(|sample| places(sample).map(|place| points[place])).collect();
+                term.spec.target.settle(&mut class);
+                for (place, value) in samples.iter().flat_map(places).zip(class.into_iter().flatten()) {
+                    (points[place], is_settled[place]) = (value, true);
                 }
             }
         }

@@ -9,6 +9,7 @@ mod inks;
 #[cfg(feature = "image")]
 mod picture;
 pub(crate) mod projections;
+mod settle;
 mod start;
 #[cfg(feature = "image")]
 mod tone;
@@ -109,6 +110,11 @@ impl Target {
             Target::Densities(densities) => densities.parts(),
             _ => &[],
         }
+    }
+
+    /// Brings points that lie just beside a bright pixel of a density into it, as far as it lacks any.
+    pub(crate) fn settle(&self, points: &mut [[f32; 2]]) {
+        settle::settle(self.densities(), points);
     }
 
     /// Dimensions of the target; `None` where any number will do.

@@ -99,7 +99,8 @@ impl<'a> Plane<'a> {
     fn average(&self, rows: Range<usize>, averaged: &mut Vec<f64>) {
         let width = self.size[0];
         averaged.clear();
-        averaged.extend(self.values[rows.start * width..rows.end * width].iter().map(|&value| f64::from(value)));
+        averaged
+            .extend(self.values[rows.start * width..rows.end * width].iter().map(|&value| f64::from(value)));
         if self.side == 1 {
             return;
         }

@@ -83,7 +83,8 @@ impl Survey {
         }
         let is_few = (self.size[0] + 1) * (self.size[1] + 1) <= FEW_CORNERS;
         let least = if is_few { 0.0 } else { HEAVY };
-        let heavy = strip.kinks.iter().map(|&Kink { x, y, size }| Heavy { x, y, points: size.abs() * of.points });
+        let heavy =
+            strip.kinks.iter().map(|&Kink { x, y, size }| Heavy { x, y, points: size.abs() * of.points });
         self.heavy.extend(heavy.filter(|heavy| heavy.points >= least));
         if self.heavy.len() > 4 * MOST_HEAVY {
             self.keep_heaviest();
@@ -176,14 +177,16 @@ impl Survey {
             if column >= columns || row >= rows {
                 return 0.0;
             }
-            let area = (edge(column + 1, width) - edge(column, width)) * (edge(row + 1, height) - edge(row, height));
+            let area =
+                (edge(column + 1, width) - edge(column, width)) * (edge(row + 1, height) - edge(row, height));
             self.coarse[row * columns + column] / area as f64
         };
         let corners = (0..=rows).flat_map(|row| (0..=columns).map(move |column| (column, row)));
         let kink = |(column, row): (usize, usize)| Kink {
             x: edge(column, width) as u16,
             y: edge(row, height) as u16,
-            size: value(column + 1, row + 1) - value(column, row + 1) - value(column + 1, row) + value(column, row),
+            size: value(column + 1, row + 1) - value(column, row + 1) - value(column + 1, row)
+                + value(column, row),
         };
         corners.map(kink).collect()
     }
