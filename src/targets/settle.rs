@@ -6,39 +6,56 @@
 //! are. So some of the points along a bright pixel's edge end up outside of it, by a few hundredths of its
 //! side.
 
+use std::collections::HashMap;
+
 use super::density::Density;
 
 /// Points that a pixel must call for, to get points back.
 const LEAST: f64 = 1.0;
 /// Its density over that of a pixel from which it gets them.
 const CONTRAST: f64 = 8.0;
+/// Pixels to each side whose numbers of points count together: along a bright line, what one lacks by chance
+/// the next has.
+const TOGETHER: usize = 2;
 
-/// Points by pixel.
+/// How many points pixels have and call for.
 struct Held<'a> {
     densities: &'a [Density],
     size: [usize; 2],
     /// Points per unit of the density.
     scale: f64,
-    /// Pixels with their points, in order.
-    pixels: Vec<(usize, u32)>,
-    /// Whether a point has been given away.
-    is_given: Vec<bool>,
+    /// Points by pixel.
+    counts: HashMap<usize, usize>,
 }
 
-/// Moves points that lie beside a pixel that is much brighter, and short of points, into that pixel: at most
-/// as many as it lacks, the nearest first, and none that their own pixel calls for.
+/// A point beside a bright pixel.
+struct Beside {
+    point: usize,
+    from: usize,
+    to: usize,
+    /// In pixels.
+    distance: f64,
+}
+
+/// Moves points that lie beside a pixel that is much brighter into that pixel, the nearest first: as long as
+/// it and the bright ones around it lack points, and none that their own pixel calls for.
 pub(super) fn settle(densities: &[Density], points: &mut [[f32; 2]]) {
     let Some(size) = densities.first().map(Density::size) else { return };
     let mass: f64 = densities.iter().map(Density::mass).sum();
-    let pixels = points.iter().map(|point| pixel_of(*point, size)).zip(0..);
     let scale = points.len() as f64 / mass;
-    let is_given = vec![false; points.len()];
-    let mut held = Held { densities, size, scale, pixels: pixels.collect(), is_given };
-    held.pixels.sort_unstable();
-    for pixel in 0..size[0] * size[1] {
-        let expected = held.expected(pixel);
-        if expected >= LEAST {
-            held.fill(pixel, expected, points);
+    let mut held = Held { densities, size, scale, counts: HashMap::new() };
+    points.iter().for_each(|&point| *held.counts.entry(pixel_of(point, size)).or_default() += 1);
+    let beside = (0..points.len()).filter_map(|point| held.beside(point, points[point]));
+    let mut beside: Vec<Beside> = beside.collect();
+    beside.sort_unstable_by(|a, b| a.distance.total_cmp(&b.distance).then(a.point.cmp(&b.point)));
+    for Beside { point, from, to, .. } in beside {
+        if held.is_free(from, to) {
+            let moved = inside(points[point], to, size, held.expected(to));
+            if pixel_of(moved, size) == to {
+                points[point] = moved;
+                held.counts.entry(from).and_modify(|count| *count -= 1);
+                *held.counts.entry(to).or_default() += 1;
+            }
         }
     }
 }
@@ -49,43 +66,34 @@ impl Held<'_> {
         self.scale * self.densities.iter().map(|density| f64::from(density.values()[pixel])).sum::<f64>()
     }
 
-    /// Those that it had at first.
-    fn of(&self, pixel: usize) -> &[(usize, u32)] {
-        let first = self.pixels.partition_point(|of| of.0 < pixel);
-        let count = self.pixels[first..].iter().take_while(|of| of.0 == pixel).count();
-        &self.pixels[first..first + count]
+    /// Points that it has.
+    fn count(&self, pixel: usize) -> f64 {
+        self.counts.get(&pixel).copied().unwrap_or(0) as f64
     }
 
-    fn fill(&mut self, pixel: usize, expected: f64, points: &mut [[f32; 2]]) {
-        let lacking = (expected - self.of(pixel).len() as f64).round();
-        if lacking < 1.0 {
-            return;
-        }
-        let mut near: Vec<(f64, usize, u32)> = Vec::new();
-        for beside in neighbours(pixel, self.size) {
-            if self.expected(beside) * CONTRAST > expected {
-                continue;
-            }
-            for &(_, point) in self.of(beside) {
-                let [x, y] = outside(points[point as usize], pixel, self.size);
-                near.push((x.hypot(y), beside, point));
-            }
-        }
-        near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)));
-        let mut wanted = lacking as usize;
-        for (_, beside, point) in near {
-            let left = self.of(beside).iter().filter(|of| !self.is_given[of.1 as usize]).count() as f64;
-            if wanted == 0 || self.is_given[point as usize] || left - 0.5 < self.expected(beside) {
-                continue;
-            }
-            let place = &mut points[point as usize];
-            let moved = inside(*place, pixel, self.size, expected);
-            if pixel_of(moved, self.size) == pixel {
-                *place = moved;
-                self.is_given[point as usize] = true;
-                wanted -= 1;
-            }
-        }
+    /// Points that a pixel must call for, to be bright beside another one.
+    fn bright_beside(&self, pixel: usize) -> f64 {
+        LEAST.max(CONTRAST * self.expected(pixel))
+    }
+
+    /// The nearest bright pixel beside a point, if there is one.
+    fn beside(&self, point: usize, at: [f32; 2]) -> Option<Beside> {
+        let from = pixel_of(at, self.size);
+        let least = self.bright_beside(from);
+        let bright = around(from, 1, self.size).filter(|&to| self.expected(to) >= least);
+        let near = bright.map(|to| {
+            let [x, y] = outside(at, to, self.size);
+            Beside { point, from, to, distance: x.hypot(y) }
+        });
+        near.min_by(|a, b| a.distance.total_cmp(&b.distance))
+    }
+
+    /// Whether a pixel has a point too many, and the bright ones around another lack one.
+    fn is_free(&self, from: usize, to: usize) -> bool {
+        let least = self.bright_beside(from);
+        let bright = around(to, TOGETHER, self.size).filter(|&pixel| self.expected(pixel) >= least);
+        let lacking: f64 = bright.map(|pixel| self.expected(pixel) - self.count(pixel)).sum();
+        lacking >= 0.5 && self.count(from) - 0.5 >= self.expected(from)
     }
 }
 
@@ -95,12 +103,11 @@ fn pixel_of(point: [f32; 2], [width, height]: [usize; 2]) -> usize {
     at(point[1], height) * width + at(point[0], width)
 }
 
-/// The up to eight pixels around one.
-fn neighbours(pixel: usize, [width, height]: [usize; 2]) -> impl Iterator<Item = usize> {
+/// Pixels up to some columns and rows from one, and that one.
+fn around(pixel: usize, reach: usize, [width, height]: [usize; 2]) -> impl Iterator<Item = usize> {
     let (x, y) = (pixel % width, pixel / width);
-    let around = |at: usize, len: usize| at.saturating_sub(1)..=(at + 1).min(len - 1);
-    let all = around(y, height).flat_map(move |y| around(x, width).map(move |x| y * width + x));
-    all.filter(move |&beside| beside != pixel)
+    let range = move |at: usize, len: usize| at.saturating_sub(reach)..=(at + reach).min(len - 1);
+    range(y, height).flat_map(move |y| range(x, width).map(move |x| y * width + x))
 }
 
 /// How far a point lies beyond a pixel, along both axes, in pixels; negative to the left and above.
@@ -160,8 +167,8 @@ mod tests {
         let mut settled = full.clone();
         settle(&[density], &mut settled);
         assert_eq!(settled, full);
-        // It calls for five and has three; one that is hardly brighter than those around it takes none either.
-        for (around, taken) in [(12.0, 0), (10.0, 2)] {
+        // It calls for five, or nine, and has three; one that is hardly brighter than those around it takes none either.
+        for (around, taken) in [(12.0, 0), (5.0, 6)] {
             let mut values = vec![around; 25];
             values[12] = 90.0;
             let mut few = before[80..].to_vec();

@@ -3,6 +3,7 @@
 mod classes;
 mod custom;
 mod density;
+mod importance;
 #[cfg(feature = "image")]
 mod picture_files;
 #[cfg(feature = "image")]
