@@ -56,3 +56,17 @@ fn the_peak_of_a_run_is_a_small_multiple_of_the_table() {
         assert!(multiple < most, "{slices_per_class} slices, {sweeps} sweeps: {multiple:.2} times the table");
     }
 }
+
+/// A picture of 16 megapixels for 1,000 points: 4 bytes a pixel are the picture itself.
+#[test]
+fn planning_a_large_picture_takes_less_than_twice_its_memory() {
+    use fsot::targets::Density;
+
+    let side = 4000;
+    let values = (0..side * side).map(|i| ((i % side) * (i / side) % 256) as f32).collect();
+    let density = Density::new(side, side, values).unwrap();
+    let config = Config::stippling(1000, density);
+    let peak = one_thread().install(|| measure(|| drop(Optimizer::new(config.clone()).unwrap())).bytes_max);
+    let per_pixel = peak as f64 / (side * side) as f64;
+    assert!(per_pixel < 4.0, "{per_pixel:.2} bytes a pixel beside the picture");
+}

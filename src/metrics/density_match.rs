@@ -4,7 +4,7 @@ use super::block_deviation::BlockDeviation;
 use super::coordinates::Coordinates;
 use super::error::MeasureError;
 use super::samples::Samples;
-use crate::error::RangeError;
+use crate::error::{RangeError, TargetError};
 use crate::targets::Density;
 
 /// How points follow a density: after both are blurred, and by their numbers in blocks of pixels.
@@ -43,9 +43,9 @@ impl DensityMatch {
     ///
     /// `dims` names the coordinates that run to the right and down. `sigma`, in `(0, 1]`, is in units of the
     /// picture's longer side; about two distances between neighbouring points is what an eye blurs. Where it
-    /// is more than 16 pixels, the picture is averaged down first, so that it is 8; [`DensityMatch::worst`] is
-    /// always that of the picture itself. O(pixels + points · log points), in about 8 bytes a pixel where the
-    /// picture is averaged down, and 40 elsewhere.
+    /// is more than 16 pixels, the picture is averaged down first, so that it is 8; [`DensityMatch::worst`]
+    /// is always that of the picture itself. O(pixels + points · log points), in about 8 bytes a pixel where
+    /// the picture is averaged down, and 40 elsewhere.
     ///
     /// # Errors
     /// Equal or missing dimensions; a `sigma` that is not positive, or beyond 1; not enough memory.
@@ -70,10 +70,12 @@ impl DensityMatch {
         let density = &density.averaged_down(fewer.ceil() as usize)?;
         let ([width, height], sigma_px) = (density.size(), sigma_px(density));
         let pixel = |point: &[f64]| pixel_of(point, [width, height]);
-        let mut histogram = vec![0.0; width * height];
+        let mut histogram = zeros(width * height)?;
         points.points().for_each(|point| histogram[pixel(point)] += 1.0);
-        let wanted: Vec<f64> = density.values().iter().map(|&value| f64::from(value)).collect();
-        let [found, wanted] = [histogram, wanted].map(|picture| blurred(&picture, width, sigma_px));
+        let found = blurred(&histogram, width, sigma_px)?;
+        let mut wanted = histogram;
+        wanted.iter_mut().zip(density.values()).for_each(|(wanted, &value)| *wanted = value.into());
+        let wanted = blurred(&wanted, width, sigma_px)?;
         let strays = points.points().filter(|point| wanted[pixel(point)] == 0.0).count();
         Ok(Self { correlation: correlation(&found, &wanted), strays, worst })
     }
@@ -86,12 +88,12 @@ fn pixel_of(point: &[f64], [width, height]: [usize; 2]) -> usize {
 }
 
 /// A picture under a Gaussian; beyond its edges there is nothing.
-fn blurred(picture: &[f64], width: usize, sigma_px: f64) -> Vec<f64> {
+fn blurred(picture: &[f64], width: usize, sigma_px: f64) -> Result<Vec<f64>, TargetError> {
     let reach = (REACH * sigma_px).ceil() as usize;
     let taps: Vec<f64> = (0..=reach).map(|r| (-0.5 * (r as f64 / sigma_px).powi(2)).exp()).collect();
     let height = picture.len() / width;
     let pass = |picture: &[f64], step: usize, len: usize, lines: &mut dyn Iterator<Item = usize>| {
-        let mut out = vec![0.0; picture.len()];
+        let mut out = zeros(picture.len())?;
         for first in lines {
             for at in 0..len {
                 let from = at.saturating_sub(reach)..(at + reach + 1).min(len);
@@ -100,10 +102,18 @@ fn blurred(picture: &[f64], width: usize, sigma_px: f64) -> Vec<f64> {
                 out[first + at * step] = sum;
             }
         }
-        out
+        Ok(out)
     };
-    let rows = pass(picture, 1, width, &mut (0..height).map(|row| row * width));
+    let rows = pass(picture, 1, width, &mut (0..height).map(|row| row * width))?;
     pass(&rows, width, height, &mut (0..width))
+}
+
+/// Nothing in each of these pixels.
+fn zeros(pixels: usize) -> Result<Vec<f64>, TargetError> {
+    let mut zeros = Vec::new();
+    zeros.try_reserve_exact(pixels).map_err(|_| TargetError::Memory { pixels })?;
+    zeros.resize(pixels, 0.0);
+    Ok(zeros)
 }
 
 fn correlation(a: &[f64], b: &[f64]) -> f64 {
@@ -157,7 +167,7 @@ mod tests {
             let place = |i: usize| match i {
                 _ if i < inside => grid(i, inside).map(|x| 0.02 + 0.96 * x),
                 _ if i < inside + beside => [-0.2, grid(i - inside, beside)[1]],
-                _ => return grid(i - inside - beside, count - inside - beside),
+                _ => grid(i - inside - beside, count - inside - beside),
             };
             (0..count)
                 .flat_map(|i| match place(i) {
@@ -173,8 +183,10 @@ mod tests {
         assert!(good.correlation > 0.9999 && good.worst.deviation.abs() < 5.0, "{good:?}");
         let bad = measure(set(1728, 320));
         assert!(bad.correlation > 0.9999 && bad.strays == 0, "{bad:?}");
-        // 320 points on a dark pixel are even less likely than their absence from the bright one.
-        assert!(bad.worst.deviation.abs() > 9.9, "{bad:?}");
-        assert_eq!((bad.worst.row, bad.worst.side), (100, 1), "{bad:?}");
+        // Ten standard errors are missing from the bright pixel; 320 points on the dark one beside it are
+        // even less likely.
+        let worst = bad.worst;
+        assert!(worst.deviation > 9.9, "{bad:?}");
+        assert_eq!([worst.column, worst.row, worst.side, worst.points], [299, 100, 1, 320], "{bad:?}");
     }
 }

@@ -238,8 +238,8 @@ pub(super) fn with_room(pixels: usize) -> Result<Vec<f32>, TargetError> {
     }
 }
 
-/// A share of one of `from` equal parts that lies in the first of the `to` parts that it overlaps, and whether
-/// that one ends within it. Parts are not narrower than those.
+/// A share of one of `from` equal parts that lies in the first of the `to` parts that it overlaps, and
+/// whether that one ends within it. Parts are not narrower than those.
 fn overlap(index: usize, from: usize, to: usize) -> (bool, f64) {
     // In units of 1 / (from · to).
     let (begin, end) = (index * to, (index + 1) * to);

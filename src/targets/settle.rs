@@ -153,7 +153,7 @@ mod tests {
         points.extend(beside.map(|[x, y]| place(x, y)));
         points.extend((0..10).map(|i| place(0.5, f64::from(i) / 2.0)));
         let before = points.clone();
-        settle(&[density.clone()], &mut points);
+        settle(std::slice::from_ref(&density), &mut points);
         let inside =
             |points: &[[f32; 2]]| points.iter().filter(|&&point| pixel_of(point, [5, 5]) == 12).count();
         assert_eq!((inside(&before), inside(&points)), (83, 89));
@@ -167,7 +167,8 @@ mod tests {
         let mut settled = full.clone();
         settle(&[density], &mut settled);
         assert_eq!(settled, full);
-        // It calls for five, or nine, and has three; one that is hardly brighter than those around it takes none either.
+        // It calls for five, or nine, and has three; one that is hardly brighter than those around it takes
+        // none either.
         for (around, taken) in [(12.0, 0), (5.0, 6)] {
             let mut values = vec![around; 25];
             values[12] = 90.0;

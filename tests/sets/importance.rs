@@ -113,8 +113,8 @@ fn several_bright_pixels_lines_and_a_sky_have_their_shares() {
     }
 }
 
-/// Where there are too few points to tell pixels apart, blocks of them do, with the mass of each, and a bright
-/// pixel among them is still one.
+/// Where there are too few points to tell pixels apart, blocks of them do, with the mass of each, and a
+/// bright pixel among them is still one.
 #[test]
 fn averaged_pictures_have_the_shares_of_their_parts() {
     let size = [1600, 1200];
