@@ -83,7 +83,8 @@ impl Config {
         Self::point_set(count, dims, vec![whole(classes, Target::UniformCube, dims)])
     }
 
-    /// Stippling: as many points as are denser where the picture is.
+    /// Stippling: as many points as are denser where the picture is, or importance sampling of a map. Bright
+    /// pixels get their share of the points, see [`Density`].
     pub fn stippling(count: usize, picture: impl Into<Arc<Density>>) -> Self {
         Self::point_set(count, 2, vec![whole(Classes::WholeTable, Target::Density(picture.into()), 2)])
     }

@@ -34,8 +34,8 @@ pub struct DensityMatch {
 /// Standard deviations after which the Gaussian ends.
 const REACH: f64 = 3.0;
 /// Standard deviations in pixels beyond which the picture is averaged down first, and to how many.
-const WIDE_PX: f64 = 16.0;
-const AVERAGED_PX: f64 = 8.0;
+const WIDE_PX: f64 = 48.0;
+const AVERAGED_PX: f64 = 32.0;
 
 impl DensityMatch {
     /// Blurs the density and the histogram of the points over its pixels with the Gaussian
@@ -43,7 +43,7 @@ impl DensityMatch {
     ///
     /// `dims` names the coordinates that run to the right and down. `sigma`, in `(0, 1]`, is in units of the
     /// picture's longer side; about two distances between neighbouring points is what an eye blurs. Where it
-    /// is more than 16 pixels, the picture is averaged down first, so that it is 8; [`DensityMatch::worst`]
+    /// is more than 48 pixels, the picture is averaged down first, so that it is 32; [`DensityMatch::worst`]
     /// is always that of the picture itself. O(pixels + points · log points), in about 8 bytes a pixel where
     /// the picture is averaged down, and 40 elsewhere.
     ///
