@@ -131,3 +131,17 @@ fn a_large_picture_is_opened_in_few_bytes_a_pixel() {
         assert!(averaged < 2.5 && full < 4.5 && inks < 8.5 && full_inks < 16.5, "{}", path.display());
     }
 }
+
+/// A picture of 16 megapixels for 1,000 points: 4 bytes a pixel are the picture itself.
+#[test]
+fn planning_a_large_picture_takes_less_than_twice_its_memory() {
+    use fsot::targets::Density;
+
+    let side = 4000;
+    let values = (0..side * side).map(|i| ((i % side) * (i / side) % 256) as f32).collect();
+    let density = Density::new(side, side, values).unwrap();
+    let config = Config::stippling(1000, density);
+    let peak = one_thread().install(|| measure(|| drop(Optimizer::new(config.clone()).unwrap())).bytes_max);
+    let per_pixel = peak as f64 / (side * side) as f64;
+    assert!(per_pixel < 4.0, "{per_pixel:.2} bytes a pixel beside the picture");
+}

@@ -83,8 +83,9 @@ impl Config {
         Self::point_set(count, dims, vec![whole(classes, Target::UniformCube, dims)])
     }
 
-    /// Stippling: as many points as are denser where the picture is.
-    pub fn stippling(count: usize, picture: Density) -> Self {
+    /// Stippling: as many points as are denser where the picture is, or importance sampling of a map. Bright
+    /// pixels get their share of the points, see [`Density`].
+    pub fn stippling(count: usize, picture: impl Into<Arc<Density>>) -> Self {
         Self::point_set(count, 2, vec![whole(Classes::WholeTable, Target::Density(picture.into()), 2)])
     }
 
@@ -104,11 +105,11 @@ impl Config {
             if set.iter().any(|&ink| counts[ink as usize] == 0) {
                 continue;
             }
-            let Some(density) = picture.mixture(&set) else { continue };
+            let Some(densities) = picture.together(&set) else { continue };
             let classes = Classes::labelled(labels.clone(), [set]);
             // Terms share touches by weight, classes of different sizes unequally.
             let weight = size as f64 * weight_of(size as f64);
-            terms.push(Term { weight, ..whole(classes, Target::Density(density), 2) });
+            terms.push(Term { weight, ..whole(classes, Target::Densities(densities), 2) });
         }
         Self::point_set(count, 2, terms)
     }

@@ -12,7 +12,6 @@ use rand::{Rng, RngExt};
 use self::banks::Banks;
 use self::cube_bank::{Block, CubeBank};
 use self::target_bank::TargetBank;
-use crate::error::TargetError;
 use crate::simd::{LANES, Row};
 use crate::targets::Target;
 
@@ -85,21 +84,19 @@ impl Directions {
 
 impl Slicer {
     /// Draws `per_subset` directions (`1..=LANES`; one in one dimension) for a target, of which the share
-    /// `axis_share` lies on coordinate axes.
-    ///
-    /// # Errors
-    /// A target with a law that is none.
+    /// `axis_share` lies on coordinate axes. The bank of a target other than the cube must have been planned.
     pub(crate) fn new(
         dims: usize,
         per_subset: usize,
         axis_share: f64,
         target: &Target,
         banks: &mut Banks,
-    ) -> Result<Self, TargetError> {
+    ) -> Self {
         let per_subset = per_subset.min(LANES);
         let (mut bank, mut target_bank) = (None, None);
         if *target != Target::UniformCube {
-            target_bank = Some(banks.of_target(dims, target)?);
+            target_bank = banks.of_target(dims, target);
+            debug_assert!(target_bank.is_some(), "{target:?} was not planned");
         } else if dims > 2 {
             bank = Some(banks.of_cube(dims));
         }
@@ -110,7 +107,7 @@ impl Slicer {
             let (sin, cos) = libm::sincos(spacing * lane as f64);
             [cos, sin]
         }));
-        Ok(slicer)
+        slicer
     }
 
     /// The laws of directions that this slicer has drawn.

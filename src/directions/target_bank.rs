@@ -11,6 +11,27 @@ use crate::error::TargetError;
 use crate::laws::Pieces;
 use crate::simd::LANES;
 use crate::targets::Target;
+use crate::targets::projections::{self, Asked};
+use crate::targets::watch::{Stopped, Watch};
+
+/// Why there is no bank.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum BankError {
+    Target(TargetError),
+    Stopped,
+}
+
+impl From<TargetError> for BankError {
+    fn from(problem: TargetError) -> Self {
+        Self::Target(problem)
+    }
+}
+
+impl From<Stopped> for BankError {
+    fn from(Stopped: Stopped) -> Self {
+        Self::Stopped
+    }
+}
 
 /// Directions and laws of a target in one number of dimensions.
 #[derive(Clone, Debug)]
@@ -27,38 +48,45 @@ const IN_THE_PLANE: usize = 256;
 /// Directions in space.
 const IN_SPACE: usize = 512;
 
+/// Directions whose laws are asked for at once, of targets that are no densities.
+const AT_ONCE: usize = 32;
+
 impl TargetBank {
-    /// The bank of a target.
+    /// The banks of targets, each with the number of points that are to follow it. They must be one target,
+    /// or densities of one size, which are projected together.
     ///
     /// # Errors
-    /// A law that is none.
-    pub(crate) fn new(dims: usize, target: &Target) -> Result<Self, TargetError> {
-        let count = match dims {
-            1 => 0,
-            2 => IN_THE_PLANE,
-            _ => IN_SPACE,
-        };
-        let scales = target.scales(dims);
-        let directions: Vec<Vec<f64>> = match dims {
-            ..=2 => (0..count).map(|index| spread(dims, index, count)).collect(),
-            _ => frames(dims, count),
-        };
-        let axis = |axis: usize| (0..dims).map(|dim| if dim == axis { 1.0 } else { 0.0 }).collect();
-        let all: Vec<Vec<f64>> = directions.into_iter().chain((0..dims).map(axis)).collect();
-        let theta: Vec<f32> = all
-            .iter()
-            .flat_map(|theta| theta.iter().zip(&scales).map(|(x, scale)| (x * scale) as f32))
+    /// A law that is none; planning was stopped.
+    pub(crate) fn of_targets(
+        dims: usize,
+        asked: &[(&Target, usize)],
+        watch: &mut Watch,
+    ) -> Result<Vec<Self>, BankError> {
+        let Some(&(target, _)) = asked.first() else { return Ok(Vec::new()) };
+        let theta = directions(dims, target);
+        // The law belongs to the direction as it will be used, rounded.
+        let exact: Vec<Vec<f64>> = theta
+            .chunks(dims)
+            .map(|theta| theta.iter().map(|&component| component.into()).collect())
             .collect();
-        let laws: Result<Vec<Pieces>, TargetError> = theta
-            .par_chunks(dims)
-            .map(|theta| {
-                // The law belongs to the direction as it will be used, rounded.
-                let direction: Vec<f64> = theta.iter().map(|&component| component.into()).collect();
-                let law = target.project(&direction);
-                if law.is_sound() { Ok(law.into_pieces()) } else { Err(TargetError::BadLaw { direction }) }
-            })
-            .collect();
-        Ok(Self { theta, dims, laws: laws? })
+        if !target.densities().is_empty() {
+            let densities = asked
+                .iter()
+                .map(|&(target, points)| Asked { densities: target.densities(), points: Some(points) });
+            let laws = projections::laws(&densities.collect::<Vec<_>>(), &exact, watch)?;
+            return Ok(laws.into_iter().map(|laws| Self { theta: theta.clone(), dims, laws }).collect());
+        }
+        let mut laws = Vec::with_capacity(exact.len());
+        for directions in exact.chunks(AT_ONCE) {
+            let of = |direction: &Vec<f64>| {
+                let law = target.project(direction);
+                let problem = TargetError::BadLaw { direction: direction.clone() };
+                if law.is_sound() { Ok(law.into_pieces()) } else { Err(problem) }
+            };
+            laws.extend(directions.par_iter().map(of).collect::<Result<Vec<_>, _>>()?);
+            watch.tell(laws.len() as f64 / exact.len() as f64)?;
+        }
+        Ok(vec![Self { theta, dims, laws }])
     }
 
     /// Number of directions, without the axes.
@@ -86,4 +114,23 @@ impl TargetBank {
             _ => (phase * (self.len() / LANES) as f64) as usize % (self.len() / LANES) * LANES + lane,
         }
     }
+}
+
+/// Components of the directions of a target, times its scales.
+fn directions(dims: usize, target: &Target) -> Vec<f32> {
+    let count = match dims {
+        1 => 0,
+        2 => IN_THE_PLANE,
+        _ => IN_SPACE,
+    };
+    let scales = target.scales(dims);
+    let directions: Vec<Vec<f64>> = match dims {
+        ..=2 => (0..count).map(|index| spread(dims, index, count)).collect(),
+        _ => frames(dims, count),
+    };
+    let axis = |axis: usize| (0..dims).map(|dim| if dim == axis { 1.0 } else { 0.0 }).collect();
+    let all = directions.into_iter().chain((0..dims).map(axis));
+    let scaled =
+        |theta: Vec<f64>| theta.into_iter().zip(&scales).map(|(x, scale)| (x * scale) as f32).collect();
+    all.flat_map::<Vec<f32>, _>(scaled).collect()
 }

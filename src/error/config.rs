@@ -70,6 +70,9 @@ pub enum ConfigError {
         /// What stands against it.
         why: &'static str,
     },
+    /// Whoever watched the planning broke off.
+    #[error("planning was stopped: let it continue to its end")]
+    Stopped,
     /// A table of another shape than the configuration's.
     #[error(
         "the table has shape {given:?} instead of {expected:?}: bring one of that [frame, y, x, sample, dim]"

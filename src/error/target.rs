@@ -65,6 +65,12 @@ pub enum TargetError {
         /// Those of the first.
         expected: [usize; 2],
     },
+    /// A density that doesn't fit the memory.
+    #[error("there is no memory for a density of {pixels} pixels: average the picture down to fewer")]
+    Memory {
+        /// Its pixels.
+        pixels: usize,
+    },
     /// The last point of a cloud is incomplete.
     #[error("{given} coordinates for points of {dims} dimensions: give a multiple of {dims}")]
     IncompletePoint {

@@ -41,6 +41,7 @@
 //! The integrands may be your own: see [`Integrands::with_family`].
 
 mod bias;
+mod block_deviation;
 mod bound;
 mod coordinates;
 mod density_match;
@@ -63,6 +64,7 @@ mod spectra;
 mod volume;
 
 pub use bias::Bias;
+pub use block_deviation::BlockDeviation;
 pub use bound::Bound;
 pub use density_match::DensityMatch;
 pub use discrepancy::Discrepancy;

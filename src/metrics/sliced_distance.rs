@@ -33,6 +33,9 @@ pub struct SlicedDistance {
     pub w2: f64,
 }
 
+/// Directions whose laws are kept at once: a picture is projected on all of them in one pass.
+const TOGETHER: usize = 256;
+
 impl SlicedDistance {
     /// Measures the dimension group `dims` of samples along at least one direction.
     ///
@@ -54,21 +57,26 @@ impl SlicedDistance {
             return Err(MeasureError::Nothing { what: "directions" });
         }
         let scales = target.scales(dims.len());
-        let squared = (0..directions).into_par_iter().map(|index| {
+        let scaled = |index| {
             let direction = spread(dims.len(), index, directions);
-            let direction: Vec<f64> =
-                direction.iter().zip(&scales).map(|(component, scale)| component * scale).collect();
-            let along = |point: &[f64]| point.iter().zip(&direction).map(|(x, theta)| x * theta).sum();
-            let projections: Vec<f64> = points.points().map(along).collect();
-            let law = target.project(&direction);
-            if !law.is_sound() {
-                return Err(TargetError::BadLaw { direction });
-            }
-            let displacements = &mut vec![0.0; projections.len()];
-            Ok(Workspace::default().displacements(&law, &projections, None, displacements))
-        });
+            direction.iter().zip(&scales).map(|(component, scale)| component * scale).collect()
+        };
+        let all: Vec<Vec<f64>> = (0..directions).map(scaled).collect();
         // Collected first: the order of the sum must not depend on the threads.
-        let squared: Vec<f64> = squared.collect::<Result<_, _>>()?;
+        let mut squared: Vec<f64> = Vec::with_capacity(directions);
+        for together in all.chunks(TOGETHER) {
+            let laws = target.project_all(together);
+            let squares = together.par_iter().zip(&laws).map(|(direction, law)| {
+                if !law.is_sound() {
+                    return Err(TargetError::BadLaw { direction: direction.clone() });
+                }
+                let along = |point: &[f64]| point.iter().zip(direction).map(|(x, theta)| x * theta).sum();
+                let projections: Vec<f64> = points.points().map(along).collect();
+                let displacements = &mut vec![0.0; projections.len()];
+                Ok(Workspace::default().displacements(law, &projections, None, displacements))
+            });
+            squared.extend(squares.collect::<Result<Vec<f64>, _>>()?);
+        }
         Ok(Self { w2: (squared.iter().sum::<f64>() / directions as f64).sqrt() })
     }
 }

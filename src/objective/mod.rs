@@ -6,18 +6,22 @@ pub(crate) mod plan;
 mod slice;
 mod start;
 
+use std::ops::ControlFlow;
+
 use self::plan::{PlannedTerm, classes, share_work};
 pub use self::slice::{Slice, ValueAndGradient};
-use crate::classes::{Classes, Demand, Wanted};
+use crate::classes::{Classes, Demand, FilterFamily, Wanted};
 use crate::config::{Config, Role, Term};
 use crate::directions::banks::Banks;
-use crate::error::{ConfigError, GroupError};
+use crate::directions::target_bank::BankError;
+use crate::error::{ConfigError, GroupError, TermError};
 pub use crate::error::{ObjectiveError, SliceError};
 use crate::kernel::Tap;
 use crate::table::SampleTable;
 use crate::table::domain::Domain;
 use crate::table::extent::Extent;
 use crate::targets::Target;
+use crate::targets::watch::Watch;
 
 /// An objective planned for one extent.
 ///
@@ -65,7 +69,36 @@ impl Objective {
     /// # Ok::<(), fsot::objective::ObjectiveError>(())
     /// ```
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
-        Self::planned(config, config.terms.iter().cloned().enumerate().collect(), Wanted::All)
+        Self::new_observed(config, |_| ControlFlow::Continue(()))
+    }
+
+    /// The same, for whoever waits: the laws of large pictures and of targets of one's own take their time.
+    ///
+    /// `observe` is called from time to time with the share that is planned, from 0 to 1, and may break off.
+    ///
+    /// # Errors
+    /// As [`Objective::new`]; [`ConfigError::Stopped`] if `observe` breaks off.
+    ///
+    /// ```
+    /// use std::ops::ControlFlow;
+    ///
+    /// use fsot::targets::Density;
+    /// use fsot::{Config, ConfigError, Objective};
+    ///
+    /// let config = Config::stippling(100, Density::new(8, 8, vec![1.0; 64])?);
+    /// let stopped = Objective::new_observed(&config, |share| {
+    ///     println!("{:.0} %", 100.0 * share);
+    ///     ControlFlow::Break(())
+    /// });
+    /// assert_eq!(stopped.unwrap_err(), ConfigError::Stopped);
+    /// # Ok::<(), fsot::targets::TargetError>(())
+    /// ```
+    pub fn new_observed(
+        config: &Config,
+        mut observe: impl FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<Self, ConfigError> {
+        let terms = config.terms.iter().cloned().enumerate().collect();
+        Self::planned(config, terms, Wanted::All, &mut observe)
     }
 
     /// The same for the part of a table that a renderer will really consume.
@@ -102,11 +135,17 @@ impl Objective {
         if terms.is_empty() || folded.count() == 0 {
             return Err(ConfigError::NoDemand);
         }
-        Self::planned(config, terms, Wanted::new(folded.pixels()))
+        let observe = &mut |_| ControlFlow::Continue(());
+        Self::planned(config, terms, Wanted::new(folded.pixels()), observe)
     }
 
     /// Plans terms, given with their positions in the configuration, which may have others.
-    fn planned(config: &Config, terms: Vec<(usize, Term)>, wanted: Wanted) -> Result<Self, ConfigError> {
+    fn planned(
+        config: &Config,
+        terms: Vec<(usize, Term)>,
+        wanted: Wanted,
+        observe: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<Self, ConfigError> {
         let Config { extent, dims, ref domains, ref slicing, .. } = *config;
         extent.validate(dims)?;
         if domains.len() != dims {
@@ -116,14 +155,6 @@ impl Objective {
             return Err(ConfigError::NoTerms);
         }
         slicing.validate()?;
-        let (mut planned, mut banks) = (Vec::new(), Banks::default());
-        for (index, term) in &terms {
-            let term = PlannedTerm::new(term, extent, domains, slicing, wanted.clone(), &mut banks);
-            planned.extend(term.map_err(|problem| problem.of(*index))?);
-        }
-        if planned.is_empty() {
-            return Err(ConfigError::NoDemand);
-        }
         // Where a demand leaves terms out, or all but one dimension of them, a step has as many visits fewer.
         let slices = |term: &Term| term.weight * slicing.per_subset(term.dims.len()) as f64;
         let descended = |term: &&Term| term.role == Role::Descend;
@@ -132,6 +163,26 @@ impl Objective {
             config.terms.iter().filter(descended).map(slices).sum(),
         ];
         let share = if given < all { given / all } else { 1.0 };
+        let mut checked = Vec::new();
+        for (index, term) in terms {
+            let family = PlannedTerm::family(&term, extent, domains, wanted.clone());
+            checked.extend(family.map_err(|problem| problem.of(index))?.map(|family| (index, term, family)));
+        }
+        if checked.is_empty() {
+            return Err(ConfigError::NoDemand);
+        }
+        let largest = |family: &FilterFamily| family.sizes().last().copied().unwrap_or(1);
+        let targets: Vec<_> = checked
+            .iter()
+            .map(|(_, term, family)| (term.dims.len(), &term.target, largest(family)))
+            .collect();
+        let mut banks = Banks::default();
+        banks.plan(&targets, &mut Watch::new(observe)).map_err(|(at, problem)| match problem {
+            BankError::Target(problem) => TermError::from(problem).of(checked[at].0),
+            BankError::Stopped => ConfigError::Stopped,
+        })?;
+        let plan = |(_, term, family)| PlannedTerm::new(term, family, slicing, &mut banks);
+        let mut planned: Vec<PlannedTerm> = checked.into_iter().map(plan).collect();
         share_work(&mut planned, extent, slicing, share);
         Ok(Self { extent, dims, domains: domains.clone(), terms: planned, share, wanted })
     }

@@ -47,15 +47,13 @@ const VISITS: usize = 16;
 const LEVELS: usize = 4;
 
 impl PlannedTerm {
-    /// Plans a term; `None` if no demand touches any of its classes.
-    pub(crate) fn new(
+    /// Checks a term and lists its classes; `None` if no demand touches any of them.
+    pub(crate) fn family(
         term: &Term,
         extent: Extent,
         domains: &[Domain],
-        slicing: &Slicing,
         wanted: Wanted,
-        banks: &mut Banks,
-    ) -> Result<Option<Self>, TermError> {
+    ) -> Result<Option<FilterFamily>, TermError> {
         let dims = domains.len();
         let is_weight = term.weight > 0.0 && term.weight.is_finite();
         RangeError::check(is_weight, "the weight of a term", term.weight, "above 0 and finite")?;
@@ -71,14 +69,16 @@ impl PlannedTerm {
             return Err(TermError::TargetOnTorus { dimension });
         }
         let family = FilterFamily::new(&term.classes, extent, wanted)?;
-        if family.visits() == 0 {
-            return Ok(None);
-        }
+        Ok(Some(family).filter(|family| family.visits() > 0))
+    }
+
+    /// Plans a term whose target's bank is there.
+    pub(crate) fn new(term: Term, family: FilterFamily, slicing: &Slicing, banks: &mut Banks) -> Self {
         let sizes = family.sizes();
         // A subset that is not sorted in lanes gains nothing from sharing its directions.
         let long = sizes[0] > LONGEST;
         let per_subset = if long { 1 } else { slicing.per_subset(term.dims.len()) };
-        let slicer = Slicer::new(term.dims.len(), per_subset, slicing.axis_share, &term.target, banks)?;
+        let slicer = Slicer::new(term.dims.len(), per_subset, slicing.axis_share, &term.target, banks);
         let abreast = term.dims.len() == 1 && term.target == Target::UniformCube && family.is_per_site();
         let in_lanes = !family.is_weighted() && (slicer.per_subset() > 1 || abreast);
         let sizes: BTreeSet<usize> = match sizes.last() {
@@ -96,8 +96,8 @@ impl PlannedTerm {
         };
         let scales = term.target.scales(term.dims.len());
         let stretch = scales.iter().map(|scale| (1.0 / (scale * scale)) as f32).collect();
-        Ok(Some(Self {
-            spec: term.clone(),
+        Self {
+            spec: term,
             family,
             slicer,
             longest,
@@ -108,7 +108,7 @@ impl PlannedTerm {
             rate: 0.0,
             steady: false,
             pull: 1.0,
-        }))
+        }
     }
 
     /// The lower boundaries of `n` quantile cells, as planned or else written to `spare`.

@@ -6,6 +6,8 @@ mod record;
 mod report;
 mod run;
 
+use std::ops::ControlFlow;
+
 pub use self::report::{RunReport, SliceStep, StepReport};
 use crate::classes::Demand;
 use crate::config::{Config, Role, Until};
@@ -75,6 +77,18 @@ impl Optimizer {
     /// Whatever [`Objective::new`] refuses, and descent parameters outside their ranges.
     pub fn new(config: Config) -> Result<Self, ConfigError> {
         let objective = Objective::new(&config)?;
+        Self::with(config, objective)
+    }
+
+    /// The same, telling the share of the planning that is done: see [`Objective::new_observed`].
+    ///
+    /// # Errors
+    /// As [`Optimizer::new`]; [`ConfigError::Stopped`] if `observe` breaks off.
+    pub fn new_observed(
+        config: Config,
+        observe: impl FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<Self, ConfigError> {
+        let objective = Objective::new_observed(&config, observe)?;
         Self::with(config, objective)
     }
 

@@ -129,6 +129,9 @@ impl Optimizer {
         }
         // A run may be broken off between two balances.
         self.fetch();
+        if report.slices > 0 {
+            self.objective.settle(&mut self.points);
+        }
         report.elapsed = begin.elapsed();
         // Nobody needs the buffers until the next run.
         self.slices.release();

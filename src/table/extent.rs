@@ -102,15 +102,16 @@ impl Extent {
         Site { frame: row / self.height, y: row % self.height, x }
     }
 
-    /// Where the `use_number`th use of a table in a frame should read it: the table displaced as a whole, by so
-    /// many rows and columns. Use 0 stays in place. Wraps, and takes any number.
+    /// Where the `use_number`th use of a table in a frame should read it: the table displaced as a whole, by
+    /// so many rows and columns. Use 0 stays in place. Wraps, and takes any number.
     ///
-    /// Nearby samples of a table are correlated (those of the released 64×64 tile by −0.42 one pixel away, and
-    /// still by up to 0.2 seven pixels away), so that uses that should be independent of each other, such as
-    /// further pairs of dimensions or further samples, must lie apart. The steps of the R2 sequence (Roberts 2018, "The unreasonable
-    /// effectiveness of quasirandom sequences") keep the first 36 uses of a 64×64 tile at least 8 pixels from
-    /// each other, and 128 uses of one of 128×128. There correlations are at most 0.08 in the released tables;
-    /// their root mean square is between 0.01 (the 128×128 still) and 0.05 (64×64 with 16 frames).
+    /// Nearby samples of a table are correlated (those of the released 64×64 tile by −0.42 one pixel away,
+    /// and still by up to 0.2 seven pixels away), so that uses that should be independent of each other, such
+    /// as further pairs of dimensions or further samples, must lie apart. The steps of the R2 sequence
+    /// (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences") keep the first 36 uses of a
+    /// 64×64 tile at least 8 pixels from each other, and 128 uses of one of 128×128. There correlations are
+    /// at most 0.08 in the released tables; their root mean square is between 0.01 (the 128×128 still) and
+    /// 0.05 (64×64 with 16 frames).
     ///
     /// ```
     /// use fsot::{Extent, SampleTable, Site};

@@ -1,9 +1,9 @@
 //! Pictures as inks: cyan, magenta, yellow and black.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use super::density::Density;
+use super::density_sum::DensitySum;
 use super::picture::{Picture, PictureOptions, Raster, read};
 use crate::error::{PictureError, TargetError};
 
@@ -19,9 +19,8 @@ use crate::error::{PictureError, TargetError};
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Inks {
-    /// Columns and rows.
-    size: [usize; 2],
-    coverage: Vec<[f32; 4]>,
+    /// None of an ink that covers nothing.
+    coverage: [Option<Density>; 4],
 }
 
 impl Inks {
@@ -56,24 +55,23 @@ impl Inks {
     }
 
     fn of_raster(raster: Raster<4>) -> Result<Self, TargetError> {
-        let Raster { size, values: coverage } = raster;
-        if coverage.iter().flatten().all(|&ink| ink == 0.0) {
-            return Err(TargetError::NoDensity { width: size[0], height: size[1] });
+        let Raster { size: [width, height], values } = raster;
+        let coverage = values.map(|values| Density::new(width, height, values).ok());
+        match coverage.iter().all(Option::is_none) {
+            true => Err(TargetError::NoDensity { width, height }),
+            false => Ok(Self { coverage }),
         }
-        Ok(Self { size, coverage })
     }
 
     /// Density of an ink (0 cyan, 1 magenta, 2 yellow, 3 black); `None` if there is none of it.
     pub fn density(&self, ink: usize) -> Option<Density> {
-        (ink < 4).then_some(())?;
-        let values = self.coverage.iter().map(|inks| inks[ink]).collect();
-        Density::new(self.size[0], self.size[1], values).ok()
+        self.coverage.get(ink)?.clone()
     }
 
     /// Points of each ink if there are `count` in all, in proportion to what it covers.
     pub fn counts(&self, count: usize) -> [usize; 4] {
         let masses: [f64; 4] =
-            std::array::from_fn(|ink| self.coverage.iter().map(|inks| f64::from(inks[ink])).sum());
+            std::array::from_fn(|ink| self.coverage[ink].as_ref().map_or(0.0, Density::mass));
         let total: f64 = masses.iter().sum();
         let (mut before, mut below) = (0, 0.0);
         masses.map(|mass| {
@@ -84,13 +82,10 @@ impl Inks {
         })
     }
 
-    /// The density of some inks together, each with its mass; `None` if there is none of any.
-    pub(crate) fn mixture(&self, inks: &[u32]) -> Option<Arc<Density>> {
-        let sum = |coverage: &[f32; 4]| -> f32 {
-            inks.iter().filter_map(|&ink| coverage.get(ink as usize)).fold(0.0, |sum, ink| sum + ink)
-        };
-        let values = self.coverage.iter().map(sum).collect();
-        Density::new(self.size[0], self.size[1], values).ok().map(Arc::new)
+    /// Some inks together; `None` if there is none of any.
+    pub(crate) fn together(&self, inks: &[u32]) -> Option<DensitySum> {
+        let parts = inks.iter().filter_map(|&ink| self.density(ink as usize)).collect();
+        DensitySum::new(parts).ok()
     }
 }
 

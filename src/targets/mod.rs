@@ -3,16 +3,22 @@
 mod cloud;
 mod custom;
 mod density;
+mod density_sum;
 #[cfg(feature = "image")]
 mod inks;
 #[cfg(feature = "image")]
 mod picture;
+pub(crate) mod projections;
+mod settle;
 mod start;
 #[cfg(feature = "image")]
 mod tone;
+pub(crate) mod watch;
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 #[cfg(feature = "image")]
@@ -21,9 +27,12 @@ pub use crate::error::TargetError;
 pub use crate::laws::Projected;
 pub use crate::table::vectors::VectorMap;
 
+use self::projections::Asked;
+use self::watch::Watch;
 pub use cloud::PointCloud;
 pub use custom::{CustomTarget, Measure};
 pub use density::Density;
+pub use density_sum::DensitySum;
 #[cfg(feature = "image")]
 pub use {
     inks::Inks,
@@ -51,6 +60,8 @@ pub enum Target {
     UniformCube,
     /// A density on the square: a picture.
     Density(Arc<Density>),
+    /// Densities on top of each other.
+    Densities(DensitySum),
     /// Equally weighted points.
     Cloud(Arc<PointCloud>),
     /// A measure of the caller's own.
@@ -74,17 +85,47 @@ impl Target {
     pub fn project(&self, direction: &[f64]) -> Projected {
         match self {
             Target::UniformCube => Projected::of_cube(direction),
-            Target::Density(density) => Projected::of_pieces(density.project(direction)),
+            Target::Density(_) | Target::Densities(_) => {
+                let mut laws = self.project_all(&[direction.to_vec()]);
+                laws.pop().unwrap_or_else(|| Projected::from_samples(Vec::new()))
+            }
             Target::Cloud(cloud) => Projected::of_pieces(cloud.project(direction)),
             Target::Custom(custom) => custom.get().project(direction),
         }
+    }
+
+    /// The laws along several directions: for densities in one pass over the pixels.
+    pub(crate) fn project_all(&self, directions: &[Vec<f64>]) -> Vec<Projected> {
+        if self.densities().is_empty() {
+            return directions.par_iter().map(|direction| self.project(direction)).collect();
+        }
+        let observe = &mut |_| ControlFlow::Continue(());
+        let asked = [Asked { densities: self.densities(), points: None }];
+        let laws = projections::laws(&asked, directions, &mut Watch::new(observe));
+        // Nobody stops it.
+        let laws = laws.ok().and_then(|mut laws| laws.pop()).unwrap_or_default();
+        laws.into_iter().map(Projected::of_pieces).collect()
+    }
+
+    /// The densities that it is the sum of, if it is one.
+    pub(crate) fn densities(&self) -> &[Density] {
+        match self {
+            Target::Density(density) => std::slice::from_ref(density),
+            Target::Densities(densities) => densities.parts(),
+            _ => &[],
+        }
+    }
+
+    /// Brings points that lie just beside a bright pixel of a density into it, as far as it lacks any.
+    pub(crate) fn settle(&self, points: &mut [[f32; 2]]) {
+        settle::settle(self.densities(), points);
     }
 
     /// Dimensions of the target; `None` where any number will do.
     pub fn dims(&self) -> Option<usize> {
         match self {
             Target::UniformCube => None,
-            Target::Density(_) => Some(2),
+            Target::Density(_) | Target::Densities(_) => Some(2),
             Target::Cloud(cloud) => Some(cloud.dims()),
             Target::Custom(custom) => Some(custom.get().dims()),
         }
@@ -95,6 +136,7 @@ impl Target {
     pub fn scales(&self, dims: usize) -> Vec<f64> {
         match self {
             Target::Density(density) => density.scales().to_vec(),
+            Target::Densities(densities) => densities.scales().to_vec(),
             _ => vec![1.0; dims],
         }
     }

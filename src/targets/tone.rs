@@ -78,7 +78,7 @@ impl Density {
     }
 
     fn of_raster(raster: Raster<1>) -> Result<Self, TargetError> {
-        let Raster { size: [width, height], values } = raster;
-        Self::new(width, height, values.into_flattened())
+        let Raster { size: [width, height], values: [values] } = raster;
+        Self::new(width, height, values)
     }
 }

@@ -5,6 +5,7 @@ mod custom;
 mod density;
 #[cfg(feature = "image")]
 mod exr_files;
+mod importance;
 #[cfg(feature = "image")]
 mod picture_files;
 #[cfg(feature = "image")]

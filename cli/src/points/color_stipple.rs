@@ -121,8 +121,9 @@ impl Figures for InkLikenesses {
     fn words(&self, out: &mut dyn Write) -> io::Result<()> {
         writeln!(out, "{} sets of inks", self.sets)?;
         for InkLikeness { ink, likeness } in &self.inks {
-            let Likeness { points, correlation, strays, advice, .. } = likeness;
+            let Likeness { points, correlation, strays, worst, advice, .. } = likeness;
             writeln!(out, "{ink}: {points} points, correlation {correlation:.4}, strays {strays}")?;
+            writeln!(out, "  {worst}")?;
             advice.iter().try_for_each(|advice| writeln!(out, "  {advice}"))?;
         }
         Ok(())

@@ -1,6 +1,6 @@
 //! How points resemble a picture, and what to make of the figure.
 
-use fsot::metrics::{DensityMatch, MeasureError, Samples};
+use fsot::metrics::{BlockDeviation, DensityMatch, MeasureError, Samples};
 use fsot::targets::Density;
 use serde::Serialize;
 
@@ -15,9 +15,25 @@ pub struct Likeness {
     pub strays: usize,
     /// Standard deviation of the blur, in units of the picture's longer side.
     pub blur: f64,
+    /// The block of pixels whose number of points is the least likely for its mass.
+    pub worst: Worst,
     /// A word about a poor figure.
     pub advice: Option<&'static str>,
 }
+
+/// A block of pixels with the deviation of its number of points, in standard errors of random points.
+#[derive(Debug, Serialize)]
+pub struct Worst {
+    pub deviation: f64,
+    pub column: usize,
+    pub row: usize,
+    pub side: usize,
+    pub points: usize,
+    pub expected: f64,
+}
+
+/// Deviation beyond which mass was lost, where random points have 4 to 5.
+const LOST: f64 = 6.0;
 
 /// Correlation below which points are expected to look poor, if there are enough of them.
 const POOR: f64 = 0.9;
@@ -34,13 +50,37 @@ impl Likeness {
         let found = DensityMatch::measure(Samples::points(points, 2)?, [0, 1], density, blur)?;
         let good = found.correlation >= POOR || count < ENOUGH;
         let advice = match good {
+            true if found.worst.deviation.abs() > LOST => Some(
+                "a part of the picture has too few or too many points (see the largest deviation): \
+                 give more --slices",
+            ),
             true => None,
             false if is_even(density) => {
                 Some("the picture is almost even, so that its correlation says nothing")
             }
             false => Some("the points follow the picture poorly: give more --slices"),
         };
-        Ok(Self { points: count, correlation: found.correlation, strays: found.strays, blur, advice })
+        let DensityMatch { correlation, strays, worst, .. } = found;
+        Ok(Self { points: count, correlation, strays, blur, worst: worst.into(), advice })
+    }
+}
+
+impl From<BlockDeviation> for Worst {
+    fn from(worst: BlockDeviation) -> Self {
+        let BlockDeviation { deviation, column, row, side, points, expected, .. } = worst;
+        Self { deviation, column, row, side, points, expected }
+    }
+}
+
+impl std::fmt::Display for Worst {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { deviation, column, row, side, points, expected } = self;
+        write!(
+            formatter,
+            "largest deviation {:.1} standard errors: {points} points for {expected:.1} in the \
+             {side} x {side} pixels from column {column}, row {row} on",
+            deviation.abs()
+        )
     }
 }
 
@@ -73,7 +113,9 @@ mod tests {
         assert!(advice(&even, &left).unwrap().contains("almost even"));
         let right = Density::new(8, 1, vec![0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0]).unwrap();
         assert!(advice(&right, &left).unwrap().contains("more --slices"));
-        assert_eq!(advice(&right, &left[..200]), None);
+        // A few points resemble nothing, wherever they are; but not as few may be where they should not.
+        assert_eq!(advice(&even, &left[..10]), None);
+        assert!(advice(&right, &left[..200]).unwrap().contains("too few or too many"));
         assert_eq!(blur(1, &even), 1.0);
     }
 }

@@ -1,6 +1,7 @@
 //! What all kinds of points have in common: a run, its files, and what is said of it.
 
 use std::io::{self, Write};
+use std::ops::ControlFlow;
 use std::time::Instant;
 
 use fsot::files::RunRecord;
@@ -43,7 +44,12 @@ impl Work {
 /// Optimises points by so many slices per class, or until a signal comes.
 pub fn make(config: Config, slices: u64, progress: &Progress) -> Result<Made, Failure> {
     let begin = Instant::now();
-    let mut optimizer = Optimizer::new(config)?;
+    // A signal ends this as it ends any process: there is nothing to keep yet.
+    let mut optimizer = Optimizer::new_observed(config, |share| {
+        progress.show_planning(share);
+        ControlFlow::Continue(())
+    })?;
+    progress.end_planning();
     let planning_seconds = begin.elapsed().as_secs_f64();
     let report = run::observed(&mut optimizer, Until::SlicesPerClass(slices), progress)?;
     let work = Work { planning_seconds, run: RunRecord::from(&report) };

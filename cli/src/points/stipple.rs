@@ -88,8 +88,9 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
 
 impl Figures for Likeness {
     fn words(&self, out: &mut dyn Write) -> io::Result<()> {
-        let Self { correlation, strays, blur, advice, .. } = self;
+        let Self { correlation, strays, blur, worst, advice, .. } = self;
         writeln!(out, "correlation {correlation:.4}, strays {strays}, blurred by {blur:.4}")?;
+        writeln!(out, "{worst}")?;
         advice.iter().try_for_each(|advice| writeln!(out, "{advice}"))
     }
 }

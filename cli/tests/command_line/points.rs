@@ -91,6 +91,7 @@ fn a_flat_grey_picture_is_stippled_and_the_figure_has_a_word_of_advice() {
     let (out, err) = run(home.path(), &format!("{work} --slices 100 --out a.png --points a.npy"));
     assert_eq!(err, "");
     assert!(out.contains("correlation ") && out.contains("almost even"), "{out}");
+    assert!(out.contains("largest deviation ") && out.contains(" standard errors: "), "{out}");
     assert_eq!(names(home.path()), ["a.npy", "a.png", "a.points.json", "grey.png"]);
     assert_eq!(npy(&home.path().join("a.npy")).len(), 20000);
     let (out, _) = run(home.path(), &format!("{work} --slices 100 --json"));

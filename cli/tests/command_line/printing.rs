@@ -88,6 +88,9 @@ fn json_holds_the_figures() {
     assert!(prefixes[4]["sobol"].as_f64() > Some(0.0));
     let stipples = json(home.path(), SHORT[4]);
     assert!(stipples["figures"]["correlation"].is_f64() && stipples["seconds"].is_f64());
+    assert!(
+        stipples["figures"]["worst"]["deviation"].is_f64() && stipples["figures"]["worst"]["side"].is_u64()
+    );
     let inks = json(home.path(), SHORT[5]);
     assert!(inks["figures"]["inks"].as_array().unwrap().iter().all(|ink| ink["correlation"].is_f64()));
 }

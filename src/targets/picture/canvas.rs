@@ -7,17 +7,17 @@ use super::options::PictureOptions;
 use crate::error::{PictureError, TargetError};
 use crate::targets::density::Density;
 
-/// What has been made of the pixels of a file, row by row from the top.
+/// What has been made of the pixels of a file: number by number, each row by row from the top.
 pub(in crate::targets) struct Raster<const N: usize> {
     pub size: [usize; 2],
-    pub values: Vec<[f32; N]>,
+    pub values: [Vec<f32>; N],
 }
 
 /// `N` numbers of every pixel, or their averages.
 pub(super) struct Canvas<const N: usize, F> {
     path: PathBuf,
     size: [usize; 2],
-    values: Vec<[f32; N]>,
+    values: [Vec<f32>; N],
     /// What becomes of a pixel, or the number that stands against it.
     convert: F,
     /// `None`: pixel by pixel.
@@ -83,9 +83,12 @@ impl<const N: usize, F: Fn([f32; 4]) -> Result<[f32; N], f32>> Canvas<N, F> {
         };
         let placed = (first..).step_by(step).zip(pixels);
         let Some(Averaging { columns, rows, sums }) = averaging else {
-            let values = &mut values[row * size[0]..(row + 1) * size[0]];
             for (x, pixel) in placed {
-                values[x] = convert(x, pixel)?;
+                let numbers = convert(x, pixel)?;
+                values
+                    .iter_mut()
+                    .zip(numbers)
+                    .for_each(|(values, number)| values[row * size[0] + x] = number);
             }
             return Ok(());
         };
@@ -99,9 +102,12 @@ impl<const N: usize, F: Fn([f32; 4]) -> Result<[f32; N], f32>> Canvas<N, F> {
             }
         }
         for &(row, share) in rows.parts(row) {
-            let values = &mut values[row as usize * size[0]..][..size[0]];
-            for (values, sums) in values.iter_mut().zip(&*sums) {
-                values.iter_mut().zip(sums).for_each(|(value, sum)| *value += (share * sum) as f32);
+            for (number, values) in values.iter_mut().enumerate() {
+                let values = &mut values[row as usize * size[0]..][..size[0]];
+                values
+                    .iter_mut()
+                    .zip(&*sums)
+                    .for_each(|(value, sums)| *value += (share * sums[number]) as f32);
             }
         }
         sums.fill([0.0; N]);
@@ -114,22 +120,26 @@ impl<const N: usize, F: Fn([f32; 4]) -> Result<[f32; N], f32>> Canvas<N, F> {
         if orientation == Orientation::default() {
             return Ok(Raster { size, values });
         }
-        let mut turned = zeros(&path, values.len())?;
         let [width, height] = orientation.size(size);
-        for (index, turned) in turned.iter_mut().enumerate() {
-            let [x, y] = orientation.source([index % width, index / width], size);
-            *turned = values[y * size[0] + x];
+        let mut turned = zeros(&path, width * height)?;
+        for (turned, values) in turned.iter_mut().zip(values) {
+            for (index, turned) in turned.iter_mut().enumerate() {
+                let [x, y] = orientation.source([index % width, index / width], size);
+                *turned = values[y * size[0] + x];
+            }
         }
         Ok(Raster { size: [width, height], values: turned })
     }
 }
 
 /// Memory for `count` pixels, or a refusal.
-fn zeros<const N: usize>(path: &Path, count: usize) -> Result<Vec<[f32; N]>, PictureError> {
-    let mut values = Vec::new();
-    reserve(path, &mut values, count)?;
-    values.resize(count, [0.0; N]);
-    Ok(values)
+fn zeros<const N: usize>(path: &Path, count: usize) -> Result<[Vec<f32>; N], PictureError> {
+    let mut all = [const { Vec::new() }; N];
+    for values in &mut all {
+        reserve(path, values, count)?;
+        values.resize(count, 0.0);
+    }
+    Ok(all)
 }
 
 /// Makes room for `count` more, or refuses.

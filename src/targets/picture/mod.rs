@@ -18,7 +18,7 @@ use std::path::Path;
 pub(super) use canvas::Raster;
 pub use options::{PictureOptions, Transfer};
 
-use super::density::Density;
+use super::density::{Density, with_room};
 use crate::error::{PictureError, TargetError};
 
 /// A picture in linear light: red, green, blue, each multiplied by alpha, and alpha of every pixel, row by
@@ -82,8 +82,12 @@ impl Picture {
     /// # Errors
     /// Those of [`Picture::open`], with the limit of the options, and no layer of the name.
     pub fn open_with(path: impl AsRef<Path>, options: &PictureOptions) -> Result<Self, PictureError> {
-        let Raster { size: [width, height], values } = read(path.as_ref(), options, Ok)?;
-        Ok(Self { width, height, pixels: values })
+        let path = path.as_ref();
+        let Raster { size: [width, height], values: [red, green, blue, alpha] } = read(path, options, Ok)?;
+        let mut pixels = Vec::new();
+        canvas::reserve(path, &mut pixels, width * height)?;
+        pixels.extend((0..width * height).map(|at| [red[at], green[at], blue[at], alpha[at]]));
+        Ok(Self { width, height, pixels })
     }
 
     /// Pixels in a row.
@@ -106,13 +110,18 @@ impl Picture {
         &self,
         convert: impl Fn([f32; 4]) -> Result<[f32; N], f32>,
     ) -> Result<Raster<N>, TargetError> {
-        let values = self.pixels.iter().enumerate().map(|(index, &pixel)| {
-            convert(pixel).map_err(|value| {
+        let mut values = [(); N].map(|()| Vec::new());
+        for values in &mut values {
+            *values = with_room(self.pixels.len())?;
+        }
+        for (index, &pixel) in self.pixels.iter().enumerate() {
+            let numbers = convert(pixel).map_err(|value| {
                 let [x, y] = [index % self.width, index / self.width];
                 TargetError::BadDensity { x, y, value: value.into() }
-            })
-        });
-        Ok(Raster { size: [self.width, self.height], values: values.collect::<Result<_, _>>()? })
+            })?;
+            values.iter_mut().zip(numbers).for_each(|(values, number)| values.push(number));
+        }
+        Ok(Raster { size: [self.width, self.height], values })
     }
 }
 
