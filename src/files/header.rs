@@ -127,7 +127,10 @@ fn decoded(bytes: &[u8], version: u8) -> Result<Vec<char>, String> {
 
 /// The dictionary.
 fn parse(text: &[char], version: u8) -> Result<Header, String> {
-    let item = Parser::new(text, version < 3).parse()?;
+    let item = Parser::new(text, version < 3).parse().map_err(|reason| {
+        let text: String = text.iter().collect();
+        if text.trim().is_empty() { reason } else { format!("{reason} in {}", text.trim()) }
+    })?;
     let Value::Dict(entries) = item.value else {
         return Err(format!("not a dictionary: {}", quote(text, &item).trim()));
     };

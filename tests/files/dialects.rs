@@ -59,7 +59,7 @@ const TAKEN: [&str; 40] = [
     // Python 2, which is read in versions 1 and 2.
     "{'descr': '<f4', 'fortran_order': False, 'shape': (1L, 1L, 2L, 1L, 2L), }",
     "{'descr': '<f4', 'fortran_order': False, 'shape': (1 L, 1, 2L , 1, 0x2L)}",
-    "\n {'descr': '<f4', 'fortran_order': False, 'shape': (1L,\n1L,\n2L,\n1L,\n2L\n)}",
+    "\n{'descr': '<f4', 'fortran_order': False, 'shape': (1L,\n1L,\n2L,\n1L,\n2L\n)}",
     "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 1, 64L, 1, 2), 'shape': (1, 1, 2, 1, 2)}",
     // What stands in strings is text.
     "{'descr': '((((((((((((((', 'descr': '<f4', 'fortran_order': False, 'shape': (1, 1, 2, 1, 2)}",
@@ -74,7 +74,7 @@ fn what_numpy_takes_is_read() {
     let mut refused = Vec::new();
     for dictionary in TAKEN {
         let file = npy(dictionary, &bytes());
-        let is_python_2 = dictionary.contains("2L");
+        let is_python_2 = ["2L", "4L"].iter().any(|long| dictionary.contains(long));
         let read = [load_bytes(&file), load_bytes(&version_3(&file))];
         for (version, read) in [1, 3].into_iter().zip(read) {
             match read {

@@ -2,6 +2,7 @@
 
 mod damage;
 mod dialects;
+mod import;
 mod metadata;
 mod round_trip;
 mod saving;
