@@ -29,8 +29,9 @@ fn shell(home: &Path, line: &str) -> Output {
 fn followed(name: &str, bytes: &[u8]) -> SampleTable {
     let home = tempdir().unwrap();
     fs::write(home.path().join(name), bytes).unwrap();
-    let inspected =
-        command(home.path(), "inspect --no-page --integrands 2 --bound-slices 64").arg(name).output();
+    let inspected = command(home.path(), "inspect --no-page --integrands 2 --bound-slices 64")
+        .arg(format!("./{name}"))
+        .output();
     let (out, err) = texts(&inspected.unwrap());
     assert!(
         out.is_empty() && err.lines().count() == 1 && err.matches('`').count() == 2,
@@ -83,14 +84,13 @@ fn advice_leads_to_a_table_in_one_step() {
     }
 
     // What nobody can know is suggested: levels, and how many frames or rows there are.
-    let ten_bits =
-        || (0..4096).map(|i| (i * i % 1021_u16.into()) as u16).map(|value: u16| value.to_le_bytes().to_vec());
+    let ten_bits = || (0..4096_u32).map(|i| ((i * i % 1021) as u16).to_le_bytes().to_vec());
     let table = followed("ten_bits.npy", &npy("'<u2'", "False", "(64, 64)", ten_bits()));
     assert!(table.values().iter().enumerate().all(|(i, v)| *v == ((i * i % 1021) as f32 + 0.5) / 1024.0));
     let animation: String = (0..40960).map(|i| format!("0.{i:05} 0.5\n")).collect();
     let table = followed("samples.dat", animation.as_bytes());
     assert_eq!((table.shape(), table.values()[81918]), ([10, 64, 64, 1, 2], 0.40959));
-    assert_eq!(followed("points.dat", &b"0 3\n9 1000\n5 5\n".repeat(1)).shape(), [1, 1, 3, 1, 2]);
+    assert_eq!(followed("points.dat", b"0 3\n9 1000\n5 5\n").shape(), [1, 1, 3, 1, 2]);
     // All in range but for what is rounded to 1, or is 1.
     let ones = [0.0_f32, 0.5, 1.0, 0.25].map(|value| value.to_le_bytes().to_vec());
     let table = followed("ones.npy", &npy("'<f4'", "False", "(1, 2, 2, 1, 1)", ones));
