@@ -35,11 +35,11 @@ const MOST_BYTES: u64 = 256 << 20;
 pub struct ImportOptions {
     /// The axes of the file, slowest first; those that are not named have length 1. Excludes lengths.
     ///
-    /// If neither they nor lengths are given: five axes are those of a table, in front of which axes of length
-    /// 1 are dropped; four are `frame, y, x, dim`, or `y, x, sample, dim` if only the first two are equal; three
-    /// are `y, x, dim` if the last is at most 16 long, else `frame, y, x`, or `y, x, frame` if only the first
-    /// two are equal; two are `y, x`, or a list of samples if the last is at most 16 long; one is a list of
-    /// scalars. Lists are square pictures, row by row.
+    /// If neither they nor lengths are given: five axes are those of a table, in front of which axes of
+    /// length 1 are dropped; four are `frame, y, x, dim`, or `y, x, sample, dim` if only the first two are
+    /// equal; three are `y, x, dim` if the last is at most 16 long, else `frame, y, x`, or `y, x, frame` if
+    /// only the first two are equal; two are `y, x`, or a list of samples if the last is at most 16 long; one
+    /// is a list of scalars. Lists are square pictures, row by row.
     pub axes: Vec<Axis>,
     /// Of how many levels the values are, `0..levels`; a value `v` becomes `(v + ½) / levels`.
     ///
@@ -111,12 +111,12 @@ impl From<ImportError> for Problem {
 }
 
 impl SampleTable {
-    /// Makes a table of somebody else's file: a `.npy` array of floats or integers of any size, byte order and
-    /// memory order, or text with numbers between blanks, commas or semicolons, one sample or one row of a
-    /// picture a line, such as the `.dat` files of published codes.
+    /// Makes a table of somebody else's file: a `.npy` array of floats or integers of any size, byte order
+    /// and memory order, or text with numbers between blanks, commas or semicolons, one sample or one row of
+    /// a picture a line, such as the `.dat` files of published codes.
     ///
-    /// Values are rounded to the nearest `f32`, but never to 1. Time and memory are linear in the file: 8 bytes
-    /// a value beside the table.
+    /// Values are rounded to the nearest `f32`, but never to 1. Time and memory are linear in the file: 8
+    /// bytes a value beside the table.
     ///
     /// # Errors
     /// A file that cannot be read ([`TableError::Io`]), is damaged ([`TableError::Format`]), or cannot be a

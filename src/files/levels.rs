@@ -17,9 +17,9 @@ impl Scale {
 
     /// The scale of these values, whose type is not known where they come from text.
     ///
-    /// Fractions in `[0, 1]` are what they are. Whole numbers are levels: as many as are given; or, where each
-    /// from 0 or 1 to the greatest is there equally often, so many; or all of an unsigned type of at most 32
-    /// bits, if its upper half is used.
+    /// Fractions in `[0, 1]` are what they are. Whole numbers are levels: as many as are given; or, where
+    /// each from 0 or 1 to the greatest is there equally often, so many; or all of an unsigned type of at
+    /// most 32 bits, if its upper half is used.
     pub(super) fn of(values: &[f64], dtype: Option<Dtype>, given: Option<u64>) -> Result<Self, ImportError> {
         if let Some(at) = values.iter().position(|value| !value.is_finite() || *value < 0.0) {
             return Err(ImportError::Value { at, value: values[at] });
@@ -60,7 +60,8 @@ impl Scale {
         }
     }
 
-    /// The number that a value stands for. 1 itself, and what would be rounded to it, is the largest number below.
+    /// The number that a value stands for. 1 itself, and what would be rounded to it, is the largest number
+    /// below.
     pub(super) fn apply(self, value: f64) -> f32 {
         let number = match self.levels {
             None => value,

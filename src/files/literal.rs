@@ -1,4 +1,5 @@
-//! The header of a `.npy` file: a dictionary as Python writes one, in every dialect that numpy's reader takes.
+//! The header of a `.npy` file: a dictionary as Python writes one, in every dialect that numpy's reader
+//! takes.
 //!
 //! One pass without recursion, so that a header costs time in proportion to its length, however it is nested.
 

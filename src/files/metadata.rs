@@ -61,8 +61,8 @@ pub struct Metadata {
     /// Range of the values: `[0, 1)`.
     pub range: String,
     /// SHA-256 of the values that this is the metadata of, as they lie in the `.npy` behind its header
-    /// (little-endian, C order), in hexadecimal digits. [`SampleTable::save_with`] fills it in. `None` if it is
-    /// not known, as in files of before 2026-11-27.
+    /// (little-endian, C order), in hexadecimal digits. [`SampleTable::save_with`] fills it in. `None` if it
+    /// is not known, as in files of before 2026-11-27.
     ///
     /// A checksum against mix-ups, no signature: whoever writes other values may write another hash.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -164,8 +164,8 @@ impl Metadata {
         table_path.with_extension("json")
     }
 
-    /// Reads the metadata beside a table. The table itself is not read: [`check`](Self::check) says whether they
-    /// belong together, and [`SampleTable::load_with`] reads both and checks.
+    /// Reads the metadata beside a table. The table itself is not read: [`check`](Self::check) says whether
+    /// they belong together, and [`SampleTable::load_with`] reads both and checks.
     ///
     /// # Errors
     /// The path of a table that cannot have metadata beside it ([`TableError::FileName`]), a file that cannot

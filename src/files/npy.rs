@@ -1,9 +1,10 @@
 //! A table to and from `.npy`, numpy's format for one array[^npy]: little-endian `f32`, five axes
 //! `[frame][y][x][sample][dim]`, C order.
 //!
-//! Headers are written as numpy writes them, and read in every dialect that numpy reads. A file is written under a temporary name and renamed when it is complete, so a crash leaves the old table
-//! or the new one, at worst with a forgotten `.fsot-*.tmp` beside it. Reading trusts nothing: what comes back
-//! without an error is a valid table.
+//! Headers are written as numpy writes them, and read in every dialect that numpy reads. A file is written
+//! under a temporary name and renamed when it is complete, so a crash leaves the old table or the new one, at
+//! worst with a forgotten `.fsot-*.tmp` beside it. Reading trusts nothing: what comes back without an error
+//! is a valid table.
 //!
 //! [^npy]: <https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html>
 
@@ -23,8 +24,8 @@ use crate::table::extent::Extent;
 
 impl SampleTable {
     /// Writes the table as `.npy`. An existing file is replaced when the new one is complete; a failure
-    /// leaves it as it was. A symbolic link is followed. A `.json` that lies beside the file stays as it is, and
-    /// [`load_with`](Self::load_with) will say that it belongs to other values.
+    /// leaves it as it was. A symbolic link is followed. A `.json` that lies beside the file stays as it is,
+    /// and [`load_with`](Self::load_with) will say that it belongs to other values.
     ///
     /// # Errors
     /// A path that cannot name a table ([`TableError::FileName`]) or cannot be written ([`TableError::Io`]).

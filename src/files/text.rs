@@ -44,7 +44,8 @@ struct Reader {
     skipping: bool,
 }
 
-/// Reads numbers up to the end. Blank lines, what stands behind `#` or `%`, and a first line of words are passed over.
+/// Reads numbers up to the end. Blank lines, what stands behind `#` or `%`, and a first line of words are
+/// passed over.
 pub(super) fn read(mut file: File) -> Result<Numbers, Unread> {
     let mut reader = Reader::default();
     let mut block = vec![0; 1 << 16];

@@ -1,7 +1,8 @@
-//! Damaged files of every kind that is read: none panics, none takes long, and what is read is what it promises.
+//! Damaged files of every kind that is read: none panics, none takes long, and what is read is what it
+//! promises.
 //!
-//! Some seconds; `FSOT_FUZZ=50` makes fifty times as many inputs, more than half a million. `fuzz/` has the same
-//! readers for libFuzzer.
+//! Some seconds; `FSOT_FUZZ=50` makes fifty times as many inputs, more than half a million. `fuzz/` has the
+//! same readers for libFuzzer.
 
 mod mutate;
 mod seeds;
@@ -24,7 +25,8 @@ use mutate::Random;
 /// Longest that any input may take; most take microseconds.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Writes `count` damaged files, or as many times more as is asked for, and reads them. `read` says whether it could.
+/// Writes `count` damaged files, or as many times more as is asked for, and reads them. `read` says whether
+/// it could.
 fn fuzz(
     name: &str,
     count: u64,

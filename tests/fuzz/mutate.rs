@@ -1,4 +1,5 @@
-//! Damage: bits, bytes, cuts and splices everywhere, and words of the grammar where a reader would stop too soon.
+//! Damage: bits, bytes, cuts and splices everywhere, and words of the grammar where a reader would stop too
+//! soon.
 
 use fsot::files::{Axis, ImportOptions};
 use rand::RngExt;
