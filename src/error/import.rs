@@ -17,8 +17,8 @@ use super::ExtentError;
 /// let path = folder.path().join("bytes.dat");
 /// std::fs::write(&path, "0\n17\n255\n96\n")?;
 /// let error = SampleTable::import(&path, &ImportOptions::default()).unwrap_err();
-/// let TableError::Import { problem: ImportError::Levels { suggested, .. }, .. } = error else { panic!("{error}") };
-/// assert_eq!(suggested, 256);
+/// let TableError::Import { problem, .. } = error else { panic!("{error}") };
+/// assert!(matches!(problem, ImportError::Levels { suggested: 256, .. }));
 /// # Ok::<(), std::io::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -69,7 +69,8 @@ pub enum ImportError {
     },
     /// The picture's sides could not be deduced.
     #[error(
-        "{samples} samples make no square picture: give --width and --height, or for example --{axis} {length}"
+        "{samples} samples make no square picture: give --width and --height, or for example \
+         --{axis} {length}"
     )]
     NoSquare {
         /// Samples that are to be divided into rows and columns.

@@ -130,13 +130,16 @@ pub fn json(
         Beside::Nothing => Value::Null,
         Beside::Unusable(error) => json!({ "unusable": error.to_string() }),
         Beside::Foreign(problem) => json!({ "of_another_table": problem.to_string() }),
-        Beside::Own(Metadata { crate_version, seed, run, bound, sha256, .. }) => json!({
-            "crate_version": crate_version,
-            "seed": seed,
-            "run": run,
-            "bound": bound,
-            "says_of_which_values": sha256.is_some(),
-        }),
+        Beside::Own(metadata) => {
+            let Metadata { crate_version, seed, run, bound, sha256, .. } = &**metadata;
+            json!({
+                "crate_version": crate_version,
+                "seed": seed,
+                "run": run,
+                "bound": bound,
+                "says_of_which_values": sha256.is_some(),
+            })
+        }
     };
     json!({
         "name": name,

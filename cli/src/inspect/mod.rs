@@ -90,7 +90,7 @@ enum Beside {
     /// Metadata of another table.
     Foreign(FormatError),
     /// Metadata of this table, or which do not say of which values they are.
-    Own(Metadata),
+    Own(Box<Metadata>),
 }
 
 impl Beside {
@@ -102,7 +102,7 @@ impl Beside {
             Err(error) => Self::Unusable(error),
             Ok(metadata) => match metadata.check(table) {
                 Err(problem) => Self::Foreign(problem),
-                Ok(()) => Self::Own(metadata),
+                Ok(()) => Self::Own(metadata.into()),
             },
         }
     }

@@ -140,8 +140,8 @@ fn import_says_what_it_took_for_what() {
     let home = tempdir().unwrap();
     fs::write(home.path().join("mask.dat"), "0.5\n1\n0\n0.25\n").unwrap();
     let (out, _) = run(home.path(), "import mask.dat --out table.npy");
-    let expected = "mask.dat: text of shape [4, 1] as a list of samples in the order of a table, values as they \
-                    are, 1 of them 1, which became the largest number below\n\
+    let expected = "mask.dat: text of shape [4, 1] as a list of samples in the order of a table, values as \
+                    they are, 1 of them 1, which became the largest number below\n\
                     table.npy: 1 frame of 2 x 2 pixels, 1 sample per pixel, 1 dimension\n";
     assert_eq!(out, expected);
     assert_eq!(names(home.path()), ["mask.dat", "table.npy"]);
