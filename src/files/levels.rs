@@ -73,6 +73,9 @@ impl Scale {
 
 /// How many ranks there are, if each from `least`, 0 or 1, to `greatest` is there equally often.
 fn ranks(values: &[f64], least: f64, greatest: f64) -> Option<u64> {
+    if greatest - least >= values.len() as f64 {
+        return None;
+    }
     let levels = (greatest - least) as usize + 1;
     if least > 1.0 || levels < 2 || levels > values.len() || !values.len().is_multiple_of(levels) {
         return None;
@@ -112,6 +115,7 @@ mod tests {
         let suggested = |greatest, suggested| Err(ImportError::Levels { greatest, suggested });
         assert_eq!(of(&[7.0, 1023.0], "<u2", None), suggested(1023.0, 1024));
         assert_eq!(of(&[0.0, 0.0], "|u1", None), suggested(0.0, 2));
+        assert_eq!(of(&[1.0, 1e300], "<f8", None), suggested(1e300, u64::MAX));
         assert_eq!(of(&[7.0, 2.0_f64.powi(63)], "<u8", None), suggested(2.0_f64.powi(63), u64::MAX));
     }
 

@@ -260,7 +260,7 @@ impl<'a> Parser<'a> {
 
     /// A string of any kind; one that follows another continues it.
     fn string(&mut self, prefix: &str, string_before: bool) -> Result<(), String> {
-        let from = self.at - prefix.len();
+        let from = self.at - prefix.chars().count();
         let (raw, bytes) = match prefix.to_ascii_lowercase().as_str() {
             "" | "u" => (false, false),
             "r" => (true, false),

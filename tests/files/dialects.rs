@@ -164,6 +164,7 @@ fn no_header_takes_long() {
         fill("\\\n"),
         fill("'a':'b',"),
         fill("u'\u{fc}'"),
+        "\u{fc}'".to_owned(),
         brackets(4_900),
         "[".repeat(60) + &"]".repeat(60),
     ];
