@@ -81,7 +81,9 @@ fn ranks(values: &[f64], least: f64, greatest: f64) -> Option<u64> {
         return None;
     }
     let most = values.len() / levels;
-    let mut counts = vec![0_usize; levels];
+    let mut counts: Vec<usize> = Vec::new();
+    counts.try_reserve_exact(levels).ok()?;
+    counts.resize(levels, 0);
     for value in values {
         let count = &mut counts[(value - least) as usize];
         *count += 1;
