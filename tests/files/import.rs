@@ -215,8 +215,8 @@ fn text_is_read_line_by_line() {
     assert!(error.contains("ends after 0 bytes"), "{error}");
     assert_eq!(refusal(&[b'1'; 1000], &usual), number(1, &"1".repeat(64)));
     assert!(matches!(refusal(b"0.5 nan\n", &usual), ImportError::Value { at: 1, .. }));
-    assert_eq!(refusal(b"0.5\n-0.5\n", &usual), ImportError::Value { at: 1, value: -0.5 });
-    assert_eq!(refusal(b"0.5\n1.5\n", &usual), ImportError::Value { at: 1, value: 1.5 });
+    assert_eq!(refusal(b"0.5 -0.5\n", &usual), ImportError::Value { at: 1, value: -0.5 });
+    assert_eq!(refusal(b"0.5 1.5\n", &usual), ImportError::Value { at: 1, value: 1.5 });
     assert_eq!(
         refusal(b".5\n.5\n.5\n", &usual),
         ImportError::NoSquare { samples: 3, axis: "height", length: 1 }
