@@ -228,7 +228,8 @@ pub enum FormatError {
     /// The metadata describes other values of the same shape.
     #[error(
         "the metadata is of other values (SHA-256 {metadata}) than the table has ({table}), as when the \
-         table was saved without metadata or two programs wrote at once: load the table alone, or save both again"
+         table was saved without metadata or two programs wrote at once: load the table alone, or save both \
+         again"
     )]
     OtherValues {
         /// Hash according to the metadata.

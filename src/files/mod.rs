@@ -1,5 +1,5 @@
-//! What lies on the disk: tables, their metadata, other people's files, and a writer whose files appear whole or
-//! not at all.
+//! What lies on the disk: tables, their metadata, other people's files, and a writer whose files appear
+//! whole or not at all.
 
 mod dtype;
 mod header;
