@@ -210,7 +210,7 @@ fn compare_puts_tables_beside_white_noise() {
     }
     let expected = [
         "soft_shadow-2spp-Owen-Sobol_.exr",
-        "soft_shadow-2spp-White_Noise__2.exr",
+        "soft_shadow-2spp-White_Noise__2-2.exr",
         "soft_shadow-2spp-small.exr",
         "soft_shadow-2spp-small__2.exr",
         "soft_shadow-2spp-white_noise-2.exr",
