@@ -81,7 +81,8 @@ fn no_file_imports_upwards() {
 /// All sources of the workspace.
 fn all_sources() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let folders = ["src", "tests", "benches", "examples", "cli", "lab"].map(|folder| root.join(folder));
+    let folders = ["src", "tests", "benches", "examples", "cli", "lab", "fuzz/src", "fuzz/fuzz_targets"]
+        .map(|folder| root.join(folder));
     folders.iter().filter(|folder| folder.is_dir()).flat_map(|folder| sources(folder)).collect()
 }
 

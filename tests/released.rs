@@ -33,6 +33,7 @@ fn recorded() -> Vec<(String, Figures)> {
 /// As in the page: the mean over pairs of dimensions, under the kernel that the table was made for.
 fn measure(name: &str) -> Figures {
     let (table, metadata) = SampleTable::load_with(folder().join(name).with_extension("npy")).unwrap();
+    assert!(metadata.sha256.is_some(), "{name}: the metadata do not say of which values they are");
     let config: Config = serde_json::from_value(metadata.configuration).unwrap();
     assert_eq!((table.extent(), table.dims()), (config.extent, config.dims), "{name}");
     let Classes::Lattice { kernel, .. } = &config.terms[0].classes else { panic!("{name}: {config:?}") };

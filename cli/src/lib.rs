@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`table`] | a sample table, and its metadata |
 //! | [`inspect`] | figures and a page of pictures of a table |
+//! | [`import`] | a sample table of somebody else's file |
 //! | [`points`] | point sets: labelled classes, progressive sequences, stipplings |
 //!
 //! # Exit codes
@@ -32,6 +33,7 @@ use clap::{Parser, Subcommand};
 pub mod console;
 pub mod draw;
 mod flags;
+pub mod import;
 pub mod inspect;
 pub mod interrupt;
 pub mod output;
@@ -83,6 +85,7 @@ struct Command {
 enum Verb {
     Table(table::Arguments),
     Inspect(inspect::Arguments),
+    Import(import::Arguments),
     Points(points::Arguments),
 }
 
@@ -94,6 +97,8 @@ A tour:
       what the table is worth: figures, and table.inspect.png to look at
   fsot table --frames 1 --spp 4 --dims 4 --seconds 10 --out render.npy
       a still table for a renderer that takes 4 samples of 4 numbers per pixel
+  fsot import mask.npy --out table.npy
+      a table of somebody else's array or text
   fsot points two-class --counts 682,683,683 --every --points classes.csv
       three sets of points; each of them, and all their unions, are uniform
   fsot points stipple --picture face.png --count 20000 --out dots.png
@@ -113,6 +118,7 @@ pub fn main() -> ExitCode {
     let ended = match Command::parse().verb {
         Verb::Table(arguments) => table::run(&arguments),
         Verb::Inspect(arguments) => inspect::run(&arguments),
+        Verb::Import(arguments) => import::run(&arguments),
         Verb::Points(arguments) => points::run(&arguments),
     };
     match ended {

@@ -28,23 +28,29 @@ pub struct Output<'a> {
 /// # Errors
 /// What stands against a file, in one sentence with its flag.
 pub fn check(outputs: &[Output], inputs: &[&Path]) -> Result<(), Failure> {
-    for (number, &Output { flag, path, endings }) in outputs.iter().enumerate() {
+    let mut places: Vec<PathBuf> = Vec::new();
+    for &Output { flag, path, endings } in outputs {
         let name = path.display();
         if !endings.iter().any(|ending| has_ending(path, ending)) {
             let known: Vec<String> = endings.iter().map(|ending| format!(".{ending}")).collect();
             let known = known.join(" or ");
             return Err(format!("{flag} {name}: give a file name that ends in {known}").into());
         }
-        WholeFile::write(path, |_| Ok(())).map_err(|error| cannot_write(flag, path, &error))?;
-        let place = place(path);
+        let file = WholeFile::write(path, |_| Ok(())).map_err(|error| cannot_write(flag, path, &error))?;
+        let place = place(file.target());
         if inputs.iter().any(|input| input.canonicalize().is_ok_and(|input| input == place)) {
             let complaint = format!("{flag} {name} would overwrite what is read: choose another {flag}");
             return Err(complaint.into());
         }
-        if let Some(other) = outputs[..number].iter().find(|other| self::place(other.path) == place) {
-            let complaint = format!("{flag} {name} and {} are the same file: choose another", other.flag);
+        if let Some(other) = places.iter().position(|other| *other == place) {
+            let Output { flag: other_flag, path: other_path, .. } = outputs[other];
+            let complaint = format!(
+                "{flag} {name} and {other_flag} {} are the same file: choose another",
+                other_path.display()
+            );
             return Err(complaint.into());
         }
+        places.push(place);
     }
     Ok(())
 }
@@ -71,7 +77,7 @@ fn cannot_write(flag: &str, path: &Path, error: &io::Error) -> Failure {
     format!("cannot write {}: {error}; choose another {flag}", path.display()).into()
 }
 
-/// Where the file lies or is going to lie, whatever links lead there.
+/// Where the file lies or is going to lie, whatever links its folders are reached by.
 fn place(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| {
         let folder = match path.parent() {

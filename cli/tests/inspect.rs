@@ -105,7 +105,17 @@ fn metadata_are_summed_up_and_damage_is_said() {
     // A figure of another table, then no JSON at all: the table itself can still be inspected.
     let beside = Metadata::path_beside(&path);
     SampleTable::white_noise(Extent { width: 5, ..values.extent() }, 2, 0).unwrap().save(&path).unwrap();
-    assert!(figures(&path, &FEW).contains("metadata: unusable"));
+    assert!(figures(&path, &FEW).contains("metadata: NOT OF THIS TABLE"));
+    let other = SampleTable::white_noise(values.extent(), 2, 9).unwrap();
+    other.save(&path).unwrap();
+    let text = figures(&path, &FEW);
+    assert!(text.contains("metadata: NOT OF THIS TABLE") && !text.contains("seed 77"), "{text}");
+    assert!(text.contains("bound "), "the figures of the table follow");
+    // Metadata of before do not say of which values they are.
+    let known = Metadata { sha256: None, ..metadata };
+    fs::write(&beside, serde_json::to_vec(&known).unwrap()).unwrap();
+    let text = figures(&path, &FEW);
+    assert!(text.contains("seed 77") && text.contains("does not say of which values it is"), "{text}");
     fs::write(beside, "{\"format\": ").unwrap();
     let text = figures(&path, &FEW);
     assert!(text.contains("metadata: unusable") && text.contains("table.json"), "{text}");

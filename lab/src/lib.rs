@@ -4,6 +4,7 @@
 pub mod draw;
 pub mod figures;
 pub mod judge;
+pub mod names;
 pub mod program;
 pub mod published;
 mod random;

@@ -181,34 +181,54 @@ fn stored_figures_can_be_read() {
 #[test]
 fn compare_puts_tables_beside_white_noise() {
     let home = TempDir::new().unwrap();
-    let (table, out) = (home.path().join("small.npy"), home.path().join("sheet"));
-    SampleTable::white_noise(Extent { frames: 1, height: 8, width: 8, spp: 1 }, 2, 1)
-        .unwrap()
-        .save(&table)
-        .unwrap();
-    let [table, place] = [&table, &out].map(|path| path.to_str().unwrap());
+    let inside = |name: &str| home.path().join(name);
+    // The last three are one name once blanks are gone, or capitals mean nothing.
+    let files = ["small.npy", "white noise.npy", "white_noise.npy", "White_Noise.npy"].map(inside);
+    for file in &files {
+        let extent = Extent { frames: 1, height: 8, width: 8, spp: 1 };
+        SampleTable::white_noise(extent, 2, 1).unwrap().save(file).unwrap();
+    }
+    let out = inside("sheet");
+    let [table, blank, bar, capital] = files.each_ref().map(|path| path.to_str().unwrap());
+    let place = out.to_str().unwrap();
     let cache = home.path().join("references");
     let text = printed(
         env!("CARGO_BIN_EXE_compare"),
         &[
-            &["--table", table, table, "--out", place, "--cache", cache.to_str().unwrap()][..],
+            &[
+                "--table",
+                table,
+                table,
+                blank,
+                bar,
+                capital,
+                "--out",
+                place,
+                "--cache",
+                cache.to_str().unwrap(),
+            ][..],
             &["--resolution", "32", "--reference-spp", "64", "--repeats", "2", "--spp", "2"],
         ]
         .concat(),
     );
-    for words in ["white noise", "Owen-Sobol'", "small  ", "small #2", "1 of 2 spp, rest displaced"] {
+    for words in
+        ["white noise", "Owen-Sobol'", "small  ", "small #2", "white noise #2", "1 of 2 spp, rest displaced"]
+    {
         assert!(text.contains(words), "{words} is missing in: {text}");
     }
     let expected = [
         "soft_shadow-2spp-Owen-Sobol_.exr",
+        "soft_shadow-2spp-White_Noise__2-2.exr",
         "soft_shadow-2spp-small.exr",
         "soft_shadow-2spp-small__2.exr",
+        "soft_shadow-2spp-white_noise-2.exr",
         "soft_shadow-2spp-white_noise.exr",
+        "soft_shadow-2spp-white_noise__2.exr",
         "soft_shadow-2spp.png",
     ];
     assert_eq!(names(&out), expected);
     let page = image::open(out.join("soft_shadow-2spp.png")).unwrap();
-    assert!(page.width() > 5 * 384 && page.height() > 4 * 384);
+    assert!(page.width() > 8 * 384 && page.height() > 4 * 384);
 
     let said = complaint(env!("CARGO_BIN_EXE_compare"), &["--scene", "attic", "--out", place]);
     assert!(said.contains("there is no scene \"attic\"; choose one of soft_shadow"), "{said}");

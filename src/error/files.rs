@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use super::ExtentError;
+use super::{ExtentError, ImportError};
 
 /// A table that cannot be made, read or written.
 ///
@@ -67,6 +67,14 @@ pub enum TableError {
         /// What is wrong with it.
         problem: FormatError,
     },
+    /// The file holds no numbers that could be a table.
+    #[error("{}: {problem}", path.display())]
+    Import {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: ImportError,
+    },
 }
 
 /// What is wrong with a file that should hold a table or its metadata.
@@ -89,10 +97,12 @@ pub enum FormatError {
     #[error("not an ordinary file: give the path of a .npy file and of the .json beside it")]
     NotAFile,
     /// Another kind of file.
-    #[error("starts with \"{}\" instead of \"\\x93NUMPY\": give a .npy file", start.escape_ascii())]
+    #[error("starts with \"{}\" instead of \"\\x93NUMPY\": {advice}", start.escape_ascii())]
     NotNpy {
         /// First bytes of the file.
         start: Vec<u8>,
+        /// What makes a table of it.
+        advice: String,
     },
     /// The file ends before the values begin.
     #[error("ends after {bytes} bytes, but its header takes {needed}: it was cut off, write it again")]
@@ -125,28 +135,28 @@ pub enum FormatError {
         reason: String,
     },
     /// The values are not little-endian `f32`.
-    #[error(
-        "the dtype is {dtype} instead of '<f4': convert the values with astype('<f4') and save them again"
-    )]
+    #[error("the dtype is {dtype} instead of '<f4': {advice}")]
     Dtype {
         /// Type descriptor of the file.
         dtype: String,
+        /// What makes a table of it.
+        advice: String,
     },
     /// The values are in Fortran order.
-    #[error("the array of shape {shape:?} is in Fortran order: save numpy.ascontiguousarray(array) instead")]
+    #[error("the array of shape {shape:?} is in Fortran order: {advice}")]
     FortranOrder {
         /// Shape of the file.
         shape: Vec<usize>,
+        /// What makes a table of it.
+        advice: String,
     },
     /// The array does not have five axes.
-    #[error(
-        "shape {shape:?} has {} axes instead of 5: \
-         reshape to [frame, y, x, sample, dim], 1 for an absent axis",
-        shape.len()
-    )]
+    #[error("shape {shape:?} has {} axes instead of 5: {advice}", shape.len())]
     Axes {
         /// Shape of the file.
         shape: Vec<usize>,
+        /// What makes a table of it.
+        advice: String,
     },
     /// The array is empty or too large.
     #[error("shape {shape:?} cannot be a table: {problem}")]
@@ -167,12 +177,11 @@ pub enum FormatError {
         /// Bytes that the shape takes.
         expected: u64,
         /// Shape of the file.
-        shape: [usize; 5],
+        shape: Vec<usize>,
     },
     /// A value lies outside `[0, 1)` or is not finite.
     #[error(
-        "the value at [frame {}, y {}, x {}, sample {}, dim {}] is {value}: \
-         bring all values into [0, 1) and save them again",
+        "the value at [frame {}, y {}, x {}, sample {}, dim {}] is {value} instead of in [0, 1): {advice}",
         at[0], at[1], at[2], at[3], at[4]
     )]
     Value {
@@ -180,6 +189,8 @@ pub enum FormatError {
         at: [usize; 5],
         /// The value.
         value: f32,
+        /// What makes a table of it.
+        advice: String,
     },
     /// The metadata is not JSON, or lacks a field.
     #[error("{reason}: correct line {line}, or save the table again with its metadata")]
@@ -213,5 +224,17 @@ pub enum FormatError {
         metadata: [usize; 5],
         /// Shape of the table.
         table: [usize; 5],
+    },
+    /// The metadata describes other values of the same shape.
+    #[error(
+        "the metadata is of other values (SHA-256 {metadata}) than the table has ({table}), as when the \
+         table was saved without metadata or two programs wrote at once: load the table alone, or save both \
+         again"
+    )]
+    OtherValues {
+        /// Hash according to the metadata.
+        metadata: String,
+        /// Hash of the table.
+        table: String,
     },
 }

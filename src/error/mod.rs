@@ -3,6 +3,7 @@
 
 mod config;
 mod files;
+mod import;
 mod kernel;
 mod objective;
 #[cfg(feature = "image")]
@@ -12,6 +13,7 @@ mod target;
 
 pub use self::config::{ClassError, ConfigError, TermError};
 pub use self::files::{FormatError, TableError};
+pub use self::import::ImportError;
 pub use self::kernel::KernelError;
 pub use self::objective::{ObjectiveError, SliceError};
 #[cfg(feature = "image")]

@@ -4,9 +4,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 
+use super::header::shortened;
 use crate::error::{FormatError, TableError};
 use crate::kernel::Tap;
+use crate::table::SampleTable;
 use crate::table::extent::Extent;
 
 /// Kind and version of the file; the number grows when an old reader would misunderstand a new file.
@@ -57,6 +60,13 @@ pub struct Metadata {
     pub order: String,
     /// Range of the values: `[0, 1)`.
     pub range: String,
+    /// SHA-256 of the values that this is the metadata of, as they lie in the `.npy` behind its header
+    /// (little-endian, C order), in hexadecimal digits. [`SampleTable::save_with`] fills it in. `None` if it
+    /// is not known, as in files of before 2026-11-27.
+    ///
+    /// A checksum against mix-ups, no signature: whoever writes other values may write another hash.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sha256: Option<String>,
     /// Seed of all random numbers.
     pub seed: u64,
     /// The whole configuration of the optimiser.
@@ -140,6 +150,7 @@ impl Metadata {
             dtype: DTYPE.into(),
             order: ORDER.into(),
             range: RANGE.into(),
+            sha256: None,
             seed,
             configuration,
             kernels: Vec::new(),
@@ -153,8 +164,8 @@ impl Metadata {
         table_path.with_extension("json")
     }
 
-    /// Reads the metadata beside a table. The table itself is not read;
-    /// [`SampleTable::load_with`](crate::SampleTable::load_with) reads both and checks that they agree.
+    /// Reads the metadata beside a table. The table itself is not read: [`check`](Self::check) says whether
+    /// they belong together, and [`SampleTable::load_with`] reads both and checks.
     ///
     /// # Errors
     /// The path of a table that cannot have metadata beside it ([`TableError::FileName`]), a file that cannot
@@ -196,11 +207,60 @@ impl Metadata {
         Ok(())
     }
 
+    /// Checks that this is the metadata of this table: that it says the same shape, and the hash of these
+    /// values if it says one.
+    ///
+    /// # Errors
+    /// [`FormatError::OtherTable`] or [`FormatError::OtherValues`].
+    ///
+    /// ```
+    /// use fsot::files::{FormatError, Metadata};
+    /// use fsot::{Extent, SampleTable};
+    ///
+    /// let folder = tempfile::tempdir()?;
+    /// let path = folder.path().join("table.npy");
+    /// let extent = Extent::still(8, 8);
+    /// let [first, second] = [1, 2].map(|seed| SampleTable::white_noise(extent, 2, seed).unwrap());
+    /// first.save_with(&path, &Metadata::new(extent, 2, 1, "white noise".into()))?;
+    /// // The metadata of the first table stay where they are.
+    /// second.save(&path)?;
+    /// let metadata = Metadata::load(&path)?;
+    /// assert_eq!(metadata.check(&first), Ok(()));
+    /// assert!(matches!(metadata.check(&second), Err(FormatError::OtherValues { .. })));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn check(&self, table: &SampleTable) -> Result<(), FormatError> {
+        self.check_shape(table.shape())?;
+        let Some(known) = &self.sha256 else { return Ok(()) };
+        let found = sha256(table.values());
+        if known.eq_ignore_ascii_case(&found) {
+            return Ok(());
+        }
+        Err(FormatError::OtherValues { metadata: shortened(known.clone()), table: found })
+    }
+
     /// Checks that this is the metadata of a table of this shape.
     pub(crate) fn check_shape(&self, table: [usize; 5]) -> Result<(), FormatError> {
         let metadata = self.shape;
         if metadata == table { Ok(()) } else { Err(FormatError::OtherTable { metadata, table }) }
     }
+}
+
+/// The hash of values as they lie in a file.
+pub(super) fn sha256(values: &[f32]) -> String {
+    let mut hash = Sha256::new();
+    let mut block = [0; 1 << 12];
+    for values in values.chunks(block.len() / size_of::<f32>()) {
+        let bytes = &mut block[..size_of_val(values)];
+        bytes
+            .as_chunks_mut()
+            .0
+            .iter_mut()
+            .zip(values)
+            .for_each(|(bytes, value)| *bytes = value.to_le_bytes());
+        hash.update(bytes);
+    }
+    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Refuses paths beside which no metadata can lie: without a file name, or with the extension of metadata.

@@ -1,9 +1,19 @@
-//! What lies on the disk: tables, their metadata, and a writer whose files appear whole or not at all.
+//! What lies on the disk: tables, their metadata, other people's files, and a writer whose files appear
+//! whole or not at all.
 
+mod dtype;
+mod header;
+mod import;
+mod layout;
+mod levels;
+mod literal;
 pub(crate) mod metadata;
 pub(crate) mod npy;
+mod text;
 mod whole;
 
+pub use self::import::{ImportOptions, Imported};
+pub use self::layout::Axis;
 pub use self::metadata::{BoundEstimate, BoundRecord, KernelTaps, Metadata, RunRecord};
 pub use self::whole::WholeFile;
-pub use crate::error::{FormatError, TableError};
+pub use crate::error::{FormatError, ImportError, TableError};

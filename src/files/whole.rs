@@ -37,9 +37,12 @@ pub(crate) struct Replaced {
 impl WholeFile {
     /// Writes the contents beside `path` and waits until they have reached the disk.
     ///
+    /// A symbolic link is followed, also where nothing is at its end yet. The permissions of what is there
+    /// already are kept.
+    ///
     /// # Errors
     /// A path that names a directory, a device or a pipe, or lies in no directory; whatever stands against
-    /// writing.
+    /// writing. Messages name directories, never the temporary file.
     pub fn write(
         path: &Path,
         fill: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>,
@@ -54,11 +57,17 @@ impl WholeFile {
             builder.permissions(fs::Permissions::from_mode(0o666));
         }
         // In the same directory, because a rename does not cross file systems.
-        let mut file = builder.tempfile_in(directory(&target))?;
+        let mut file = builder.tempfile_in(directory(&target)).map_err(|error| {
+            let reason = format!("cannot make a file in {}: {}", directory(&target).display(), plain(&error));
+            io::Error::new(error.kind(), reason)
+        })?;
         let mut writer = BufWriter::new(file.as_file_mut());
         fill(&mut writer)?;
         writer.flush()?;
         drop(writer);
+        if let Ok(found) = fs::metadata(&target) {
+            file.as_file().set_permissions(found.permissions())?;
+        }
         // Without this a power cut may keep the rename and lose the contents.
         file.as_file().sync_all()?;
         Ok(Self { file: file.into_temp_path(), target })
@@ -69,7 +78,12 @@ impl WholeFile {
     /// # Errors
     /// Whatever stands against renaming; the target is as it was then.
     pub fn commit(self) -> io::Result<()> {
-        self.file.persist(&self.target).map_err(|failed| failed.error)
+        self.file.persist(&self.target).map_err(|failed| plain(&failed.error))
+    }
+
+    /// The file that is going to be replaced or made: the path, or where its links end.
+    pub fn target(&self) -> &Path {
+        &self.target
     }
 
     /// Takes the target's name and remembers what was there; for small files.
@@ -97,6 +111,15 @@ impl Replaced {
     }
 }
 
+/// The system's word alone, without the name of the temporary file.
+fn plain(error: &io::Error) -> io::Error {
+    let inner = error.get_ref().and_then(|inner| inner.source()).and_then(|inner| inner.downcast_ref());
+    match inner.unwrap_or(error).raw_os_error() {
+        Some(code) => io::Error::from_raw_os_error(code),
+        None => io::Error::from(error.kind()),
+    }
+}
+
 /// The file that a rename may replace: `path`, or what it links to. Refuses directories and devices.
 fn target(path: &Path) -> io::Result<PathBuf> {
     match fs::metadata(path) {
@@ -110,15 +133,32 @@ fn target(path: &Path) -> io::Result<PathBuf> {
         Ok(_) if path.is_symlink() => fs::canonicalize(path),
         Ok(_) => Ok(path.to_path_buf()),
         Err(absent) if absent.kind() == io::ErrorKind::NotFound => {
-            let directory = directory(path);
+            let end = end_of_links(path)?;
+            let directory = directory(&end);
             if directory.is_dir() {
-                return Ok(path.to_path_buf());
+                return Ok(end);
             }
             let reason = format!("there is no directory {}", directory.display());
             Err(io::Error::new(io::ErrorKind::NotFound, reason))
         }
         Err(other) => Err(other),
     }
+}
+
+/// Where symbolic links lead that end in nothing; links in a circle were told of by the system.
+fn end_of_links(path: &Path) -> io::Result<PathBuf> {
+    /// As many as Linux follows.
+    const MOST_LINKS: usize = 40;
+    let mut end = path.to_path_buf();
+    for _ in 0..MOST_LINKS {
+        if !end.is_symlink() {
+            break;
+        }
+        let next = fs::read_link(&end)?;
+        // Relative to the folder of the link, or absolute.
+        end = directory(&end).join(next);
+    }
+    Ok(end)
 }
 
 /// The directory of a file; the current one for a bare name.

@@ -12,11 +12,10 @@ use crate::{f32s, load_bytes, npy, problem, problem_of};
 fn other_files_are_recognised() {
     assert_eq!(problem(b"", &["0 bytes", "write it again"]), FormatError::Truncated { bytes: 0, needed: 10 });
     assert_eq!(problem(b"\x93NUM", &["4 bytes"]), FormatError::Truncated { bytes: 4, needed: 10 });
-    assert_eq!(
-        problem(b"0.25 0.5\n0.75\n", &["0.25 0", "give a .npy file"]),
-        FormatError::NotNpy { start: b"0.25 0".to_vec() }
-    );
-    assert_eq!(problem(b"hi", &["\"hi\""]), FormatError::NotNpy { start: b"hi".to_vec() });
+    let ragged = problem(b"0.25 0.5\n0.75\n", &["0.25 0", "line 2 has 1 numbers", "give --dims"]);
+    assert!(matches!(ragged, FormatError::NotNpy { start, .. } if start == b"0.25 0"));
+    let word = problem(b"hi", &["\"hi\"", "no numbers in it", "give a .npy file"]);
+    assert!(matches!(word, FormatError::NotNpy { start, .. } if start == b"hi"));
     let mut future = f32s("(1, 1, 1, 1, 1)", &[0.5]);
     future[6] = 9;
     assert_eq!(problem(&future, &["9.0", "1.0, 2.0 or 3.0"]), FormatError::Version { major: 9, minor: 0 });
@@ -36,14 +35,10 @@ fn damaged_headers_are_recognised() {
     let short = b"\x93NUMPY\x02\x00\xff\xff\xff";
     assert_eq!(problem(short, &["11 bytes", "12"]), FormatError::Truncated { bytes: 11, needed: 12 });
     let empty = b"\x93NUMPY\x01\x00\x00\x00";
-    assert!(matches!(problem(empty, &["newline"]), FormatError::Header { .. }));
+    assert!(matches!(problem(empty, &["it is empty"]), FormatError::Header { .. }));
 
     let nested = npy(&("[".repeat(60) + &"]".repeat(60)), &[]);
-    assert!(matches!(problem(&nested, &["60 deep"]), FormatError::Header { .. }));
-    // As deep as the parser is allowed to see, and as long: it must answer in a moment.
-    let long = npy(&("[[[[".to_owned() + &"1,".repeat(4000)), &[]);
-    assert!(matches!(problem(&long, &["not a dictionary"]), FormatError::Header { .. }));
-
+    assert!(matches!(problem(&nested, &["not a dictionary"]), FormatError::Header { .. }));
     let many = f32s(&format!("({})", "1,".repeat(4000)), &[0.5]);
     assert!(matches!(problem(&many, &["4000 axes"]), FormatError::Header { .. }));
 
@@ -59,7 +54,7 @@ fn damaged_headers_are_recognised() {
         ("{'descr': '<f4', 'fortran_order': False, 'shape': (1,), 'colour': 1}", "colour"),
         ("{'descr': '<f4', 'fortran_order'", "'fortran_order'"),
         ("('<f4',)", "'<f4'"),
-        ("\u{7f}\u{0}\u{e9}", "non-ascii"),
+        ("\u{7f}\u{0}\u{e9}", "unexpected"),
     ] {
         let problem = problem(&npy(dictionary, &[]), &[word, "numpy.save"]);
         assert!(matches!(problem, FormatError::Header { .. }), "{problem:?}");
@@ -68,16 +63,25 @@ fn damaged_headers_are_recognised() {
 
 #[test]
 fn other_types_and_orders_are_named() {
-    for dtype in ["'<f8'", "'>f4'", "'|u1'", "'<f2'", "'<c8'", "'|O'", "[('a', '<f4', (2,))]"] {
+    let file = |dtype: &str| {
         let dictionary = format!("{{'descr': {dtype}, 'fortran_order': False, 'shape': (1, 1, 1, 1, 1), }}");
-        let found = problem(&npy(&dictionary, &[0; 8]), &[&dtype[..4], "astype('<f4')"]);
+        move |size| npy(&dictionary, &vec![0; size])
+    };
+    for (dtype, size) in [("'<f8'", 8), ("'>f4'", 4), ("'<f2'", 2), ("float", 8)] {
+        let quoted = format!("'{}'", dtype.trim_matches('\''));
+        let found = problem(
+            &file(&quoted)(size),
+            &[dtype, "run `fsot import ", "table.npy --out ", "SampleTable::import"],
+        );
+        assert!(matches!(found, FormatError::Dtype { .. }), "{found:?}");
+    }
+    for dtype in ["'<c8'", "'|O'", "'<U4'", "'<f16'", "[('a', '<f4', (2,))]", "('<f4', (2,))"] {
+        let found = problem(&file(dtype)(8), &[&dtype[..4], "no number of at most 64 bits", "numpy.save"]);
         assert!(matches!(found, FormatError::Dtype { .. }), "{found:?}");
     }
     let fortran = npy("{'descr': '<f4', 'fortran_order': True, 'shape': (1, 1, 2, 1, 2), }", &[0; 16]);
-    assert_eq!(
-        problem(&fortran, &["[1, 1, 2, 1, 2]", "ascontiguousarray"]),
-        FormatError::FortranOrder { shape: vec![1, 1, 2, 1, 2] }
-    );
+    let found = problem(&fortran, &["[1, 1, 2, 1, 2]", "fsot import"]);
+    assert!(matches!(found, FormatError::FortranOrder { shape, .. } if shape == [1, 1, 2, 1, 2]));
 }
 
 #[test]
@@ -86,8 +90,8 @@ fn other_shapes_are_named() {
         [("()", vec![]), ("(1,)", vec![1]), ("(1, 1, 1, 1)", vec![1; 4]), ("(1, 1, 1, 1, 1, 1)", vec![1; 6])]
     {
         let count = format!("{} axes", axes.len());
-        let problem = problem(&f32s(shape, &[0.5]), &[&count, "instead of 5", "reshape"]);
-        assert_eq!(problem, FormatError::Axes { shape: axes });
+        let problem = problem(&f32s(shape, &[0.5]), &[&count, "instead of 5", "fsot import"]);
+        assert!(matches!(problem, FormatError::Axes { shape, .. } if shape == axes));
     }
     assert_eq!(
         problem(&f32s("(1, 0, 4, 1, 2)", &[]), &["[1, 0, 4, 1, 2]", "height is 0", "at least 1"]),
@@ -104,7 +108,7 @@ fn other_shapes_are_named() {
         }
     );
     // Just admissible, 8 GiB: refused for its length before any memory is asked for.
-    let large = [1, 1, 32767, 65537, 1];
+    let large = vec![1, 1, 32767, 65537, 1];
     assert_eq!(
         problem(&f32s("(1, 1, 32767, 65537, 1)", &[0.5]), &["4 bytes", "8589803516"]),
         FormatError::Length { given: 4, expected: 8_589_803_516, shape: large }
@@ -115,12 +119,12 @@ fn other_shapes_are_named() {
 #[test]
 fn missing_and_trailing_data_are_counted() {
     let whole = f32s("(1, 1, 2, 1, 2)", &[0.0, 0.25, 0.5, 0.75]);
-    let shape = [1, 1, 2, 1, 2];
+    let shape = vec![1, 1, 2, 1, 2];
     for cut in 1..=16 {
         let given = 16 - cut as u64;
         let found =
             problem(&whole[..whole.len() - cut], &[&format!("{given} bytes"), "takes 16", "write it again"]);
-        assert_eq!(found, FormatError::Length { given, expected: 16, shape });
+        assert_eq!(found, FormatError::Length { given, expected: 16, shape: shape.clone() });
     }
     let mut longer = whole;
     longer.push(0);
@@ -130,12 +134,17 @@ fn missing_and_trailing_data_are_counted() {
 #[test]
 fn values_outside_the_range_are_located() {
     let (nan, inf) = (f32::NAN, f32::INFINITY);
-    for (bad, word) in
-        [(nan, "NaN"), (inf, "inf"), (-inf, "-inf"), (1.0, "is 1:"), (-0.25, "-0.25"), (7.5, "7.5")]
-    {
+    for (bad, word, advice) in [
+        (nan, "NaN", "bring all values into [0, 1]"),
+        (inf, "inf", "bring all values into [0, 1]"),
+        (-inf, "-inf", "bring all values into [0, 1]"),
+        (1.0, "is 1 ", "fsot import"),
+        (-0.25, "-0.25", "bring all values into [0, 1]"),
+        (7.5, "7.5", "bring all values into [0, 1]"),
+    ] {
         let bytes = f32s("(1, 1, 2, 1, 2)", &[0.0, 0.25, 0.5, bad]);
-        let found = problem(&bytes, &[word, "[frame 0, y 0, x 1, sample 0, dim 1]", "into [0, 1)"]);
-        let FormatError::Value { at: [0, 0, 1, 0, 1], value } = found else { panic!("{found}") };
+        let found = problem(&bytes, &[word, "[frame 0, y 0, x 1, sample 0, dim 1]", advice]);
+        let FormatError::Value { at: [0, 0, 1, 0, 1], value, .. } = found else { panic!("{found}") };
         assert_eq!(value.to_bits(), bad.to_bits());
     }
 }

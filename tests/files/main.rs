@@ -1,6 +1,8 @@
 //! Tables on the disk: what is written is what is read, and a file that is not a table is told what it lacks.
 
 mod damage;
+mod dialects;
+mod import;
 mod metadata;
 mod round_trip;
 mod saving;

@@ -2,9 +2,12 @@
 
 use std::fs;
 use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
 
-use fsot::SampleTable;
 use fsot::files::{FormatError, Metadata, TableError};
+use fsot::{Extent, SampleTable};
+use tempfile::tempdir;
 
 use crate::{bits, metadata, names, problem_of, saved, table};
 
@@ -15,7 +18,8 @@ fn metadata_come_back_whole() {
     assert_eq!(names(home.path()), ["table.json", "table.npy"]);
     let (back, read) = SampleTable::load_with(&path).unwrap();
     assert_eq!(bits(&back), bits(&table));
-    assert_eq!(read, metadata(&table));
+    assert!(read.sha256.is_some());
+    assert_eq!(read, Metadata { sha256: read.sha256.clone(), ..metadata(&table) });
     assert_eq!(read, Metadata::load(&path).unwrap());
     assert_eq!(read.seed, u64::MAX - 1);
     assert_eq!(read.crate_version, env!("CARGO_PKG_VERSION"));
@@ -103,4 +107,80 @@ fn metadata_of_another_table_are_refused() {
 
     other.save(&path).unwrap();
     assert_eq!(problem_of(SampleTable::load_with(&path).unwrap_err(), "table.json", &[]), expected);
+}
+
+/// By Python's word: `hashlib.sha256(struct.pack('<f', 0.5)).hexdigest()`.
+#[test]
+fn the_hash_is_everybodys() {
+    let home = tempdir().unwrap();
+    let path = home.path().join("table.npy");
+    let table = SampleTable::new(Extent::still(1, 1), 1, vec![0.5]).unwrap();
+    table.save_with(&path, &Metadata::new(table.extent(), 1, 0, "half".into())).unwrap();
+    let hash = Metadata::load(&path).unwrap().sha256.unwrap();
+    assert_eq!(hash, "d99e58435243d9fef9c88273b8d553b4fba4d0baf8009d29eae74fa99e0d9f57");
+}
+
+/// `save` over an earlier `save_with` leaves metadata that are of other values.
+#[test]
+fn metadata_of_other_values_are_told() {
+    let (home, old, bytes) = saved();
+    let path = home.path().join("table.npy");
+    let new = SampleTable::white_noise(old.extent(), old.dims(), 8).unwrap();
+    new.save(&path).unwrap();
+    let words = ["SHA-256", "load the table alone", "save both again"];
+    let problem = problem_of(SampleTable::load_with(&path).unwrap_err(), "table.json", &words);
+    assert!(matches!(problem, FormatError::OtherValues { .. }), "{problem:?}");
+    // Both pieces of advice.
+    assert_eq!(SampleTable::load(&path).unwrap(), new);
+    new.save_with(&path, &Metadata::load(&path).unwrap()).unwrap();
+    assert_eq!(SampleTable::load_with(&path).unwrap().0, new);
+
+    // The lowest bit of one value, and another program's digits.
+    let mut flipped = bytes[0].clone();
+    *flipped.last_mut().unwrap() ^= 1;
+    fs::write(&path, &flipped).unwrap();
+    fs::write(home.path().join("table.json"), &bytes[1]).unwrap();
+    assert!(SampleTable::load_with(&path).is_err());
+    fs::write(&path, &bytes[0]).unwrap();
+    let text = String::from_utf8(bytes[1].clone()).unwrap();
+    let hash = Metadata::load(&path).unwrap().sha256.unwrap();
+    fs::write(home.path().join("table.json"), text.replace(&hash, &hash.to_uppercase())).unwrap();
+    SampleTable::load_with(&path).unwrap();
+
+    // Metadata of before say nothing of values.
+    let line = format!("  \"sha256\": \"{hash}\",\n");
+    assert!(text.contains(&line));
+    fs::write(home.path().join("table.json"), text.replace(&line, "")).unwrap();
+    new.save(&path).unwrap();
+    let (table, metadata) = SampleTable::load_with(&path).unwrap();
+    assert_eq!((table, metadata.sha256), (new, None));
+}
+
+/// Whoever is last may have renamed one file of a pair only.
+#[test]
+fn two_writers_at_once_leave_a_pair_or_say_that_they_have_not() {
+    let home = tempdir().unwrap();
+    let path = home.path().join("table.npy");
+    let extent = Extent::still(16, 16);
+    let tables = [1, 2].map(|seed| SampleTable::white_noise(extent, 2, seed).unwrap());
+    let told = AtomicUsize::new(0);
+    let tell = |path: &Path| match SampleTable::load_with(path) {
+        Ok((table, metadata)) => assert_eq!(table, tables[metadata.seed as usize - 1]),
+        Err(TableError::Format { problem: FormatError::OtherValues { .. }, .. }) => {
+            told.fetch_add(1, Ordering::Relaxed);
+        }
+        Err(other) => panic!("{other}"),
+    };
+    for _ in 0..20 {
+        thread::scope(|scope| {
+            for (seed, table) in (1..).zip(&tables) {
+                let path = &path;
+                scope.spawn(move || {
+                    table.save_with(path, &Metadata::new(extent, 2, seed, "white noise".into())).unwrap();
+                });
+            }
+        });
+        tell(&path);
+    }
+    println!("{} of 20 pairs were mixed, and told", told.into_inner());
 }

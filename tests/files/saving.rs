@@ -78,6 +78,58 @@ fn saving_replaces_both_files() {
     let path = home.path().join("table.npy");
     let new = table(5);
     new.save_with(&path, &metadata(&new)).unwrap();
-    assert_eq!(SampleTable::load_with(&path).unwrap(), (new.clone(), metadata(&new)));
+    let (table, read) = SampleTable::load_with(&path).unwrap();
+    assert_eq!((table, Metadata { sha256: None, ..read }), (new.clone(), metadata(&new)));
     assert_eq!(names(home.path()), ["table.json", "table.npy"]);
+}
+
+/// A link to a file that is not there yet, over two more links, one of them relative.
+#[cfg(unix)]
+#[test]
+fn a_dangling_link_is_followed() {
+    use std::os::unix::fs::symlink;
+    let home = tempdir().unwrap();
+    let inside = |name: &str| home.path().join(name);
+    fs::create_dir(inside("tables")).unwrap();
+    symlink("second.npy", inside("table.npy")).unwrap();
+    symlink(inside("third.npy"), inside("second.npy")).unwrap();
+    symlink("tables/goal.npy", inside("third.npy")).unwrap();
+    let table = table(2);
+    table.save(inside("table.npy")).unwrap();
+    assert_eq!(fs::read_link(inside("table.npy")).unwrap(), Path::new("second.npy"));
+    assert_eq!(names(&inside("tables")), ["goal.npy"]);
+    assert_eq!(SampleTable::load(inside("table.npy")).unwrap(), table);
+    table.save(inside("table.npy")).unwrap();
+    assert_eq!(names(&inside("tables")), ["goal.npy"]);
+
+    // Where it leads nowhere, or round in a circle, the link is named.
+    symlink("missing/goal.npy", inside("lost.npy")).unwrap();
+    symlink("circle.npy", inside("circle.npy")).unwrap();
+    let before = names(home.path());
+    for (name, word) in [("lost.npy", "missing"), ("circle.npy", "symbolic links")] {
+        let text = table.save(inside(name)).unwrap_err().to_string();
+        assert!(text.contains(name) && text.contains(word), "{text}");
+    }
+    assert_eq!(names(home.path()), before);
+}
+
+/// No message names the temporary file, which nobody has asked for.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_folder_that_takes_no_file_is_named() {
+    let text = table(2).save("/proc/self/table.npy").unwrap_err().to_string();
+    assert!(text.contains("/proc/self/table.npy") && !text.contains(".fsot-"), "{text}");
+}
+
+/// What only its owner could read stays so.
+#[cfg(unix)]
+#[test]
+fn a_replaced_file_keeps_its_permissions() {
+    use std::os::unix::fs::PermissionsExt;
+    let home = tempdir().unwrap();
+    let path = home.path().join("table.npy");
+    fs::write(&path, "").unwrap();
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o600)).unwrap();
+    table(2).save(&path).unwrap();
+    assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o600);
 }

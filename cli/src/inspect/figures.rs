@@ -3,15 +3,15 @@
 use std::path::Path;
 
 use fsot::config::DimensionGroup;
-use fsot::files::{BoundEstimate, Metadata, TableError};
+use fsot::files::{BoundEstimate, Metadata};
 use fsot::metrics::{
     Bias, Bound, Discrepancy, Estimate, FaceDensity, FilteredError, Integrands, Marginal, Ratios, Spectra,
 };
 use fsot::{Config, Extent, Objective};
 use serde_json::{Map, Value, json};
 
-use super::Inspection;
 use super::evenness::Evenness;
+use super::{Beside, Inspection};
 use crate::Failure;
 
 /// Cycles per pixel below which a frequency counts as low; the default filter halves the power at 0.09.
@@ -119,19 +119,28 @@ pub fn bound(inspection: &Inspection, groups: &[DimensionGroup]) -> Result<Bound
 /// Everything, for `--json`; what was not measured is `null`.
 pub fn json(
     inspection: &Inspection,
-    metadata: Option<&Result<Metadata, TableError>>,
+    beside: &Beside,
     groups: &[GroupFigures],
     bound: &BoundEstimate,
     page: Option<&Path>,
 ) -> Value {
     let Inspection { name, table, kernel, integrands, seed, .. } = inspection;
     let Extent { frames, height, width, spp } = table.extent();
-    let metadata = metadata.map(|metadata| match metadata {
-        Ok(Metadata { crate_version, seed, run, bound, .. }) => {
-            json!({ "crate_version": crate_version, "seed": seed, "run": run, "bound": bound })
+    let metadata = match beside {
+        Beside::Nothing => Value::Null,
+        Beside::Unusable(error) => json!({ "unusable": error.to_string() }),
+        Beside::Foreign(problem) => json!({ "of_another_table": problem.to_string() }),
+        Beside::Own(metadata) => {
+            let Metadata { crate_version, seed, run, bound, sha256, .. } = &**metadata;
+            json!({
+                "crate_version": crate_version,
+                "seed": seed,
+                "run": run,
+                "bound": bound,
+                "says_of_which_values": sha256.is_some(),
+            })
         }
-        Err(error) => json!({ "unusable": error.to_string() }),
-    });
+    };
     json!({
         "name": name,
         "shape": [frames, height, width, spp, table.dims()],

@@ -11,15 +11,16 @@ mod page;
 mod panels;
 mod report;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use fsot::config::DimensionGroup;
-use fsot::files::Metadata;
+use fsot::files::{FormatError, Metadata, TableError};
 use fsot::kernel::{SpatialKernel, TemporalKernel};
 use fsot::{Kernel, SampleTable};
 
 use self::figures::GroupFigures;
+pub(crate) use self::report::shape;
 use crate::console::Console;
 use crate::output::{self, Output};
 use crate::{Ended, Failure, Shared, temporal};
@@ -82,6 +83,31 @@ struct Inspection {
     seed: u64,
 }
 
+/// What lies beside the table.
+enum Beside {
+    Nothing,
+    Unusable(TableError),
+    /// Metadata of another table.
+    Foreign(FormatError),
+    /// Metadata of this table, or which do not say of which values they are.
+    Own(Box<Metadata>),
+}
+
+impl Beside {
+    fn find(path: &Path, table: &SampleTable) -> Self {
+        if !Metadata::path_beside(path).exists() {
+            return Self::Nothing;
+        }
+        match Metadata::load(path) {
+            Err(error) => Self::Unusable(error),
+            Ok(metadata) => match metadata.check(table) {
+                Err(problem) => Self::Foreign(problem),
+                Ok(()) => Self::Own(metadata.into()),
+            },
+        }
+    }
+}
+
 impl Inspection {
     fn sigma(&self) -> f64 {
         match self.kernel.spatial {
@@ -118,9 +144,9 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
     shared.start_threads()?;
 
     let mut console = Console::new(shared);
-    let metadata = beside.exists().then(|| SampleTable::load_with(path).map(|(_, metadata)| metadata));
+    let metadata = Beside::find(path, &inspection.table);
     console.say(|out| report::header(out, &inspection));
-    console.say(|out| report::metadata(out, metadata.as_ref()));
+    console.say(|out| report::metadata(out, &metadata));
     console.say(report::key);
     let dims = DimensionGroup::pairs_and_whole(inspection.table.dims());
     let mut groups = Vec::new();
@@ -135,7 +161,7 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
         page::draw(&inspection, first)?.save(page)?;
         console.say(|out| writeln!(out, "page: {}", page.display()));
     }
-    console.figures(&figures::json(&inspection, metadata.as_ref(), &groups, &bound, page.as_deref()));
+    console.figures(&figures::json(&inspection, &metadata, &groups, &bound, page.as_deref()));
     console.end(Ended::Done)
 }
 

@@ -2,14 +2,14 @@
 
 use std::io::{self, Write};
 
-use fsot::files::{BoundEstimate, Metadata, TableError};
+use fsot::files::BoundEstimate;
 use fsot::kernel::TemporalKernel;
 use fsot::metrics::{Marginal, Ratios};
 use fsot::{Extent, SampleTable};
 
-use super::Inspection;
 use super::evenness::Evenness;
 use super::figures::{BINS, GroupFigures, LOW};
+use super::{Beside, Inspection};
 
 pub fn header(out: &mut dyn Write, inspection: &Inspection) -> io::Result<()> {
     writeln!(out, "{}: {}", inspection.name, shape(&inspection.table))?;
@@ -49,12 +49,15 @@ pub fn filter(inspection: &Inspection) -> String {
     }
 }
 
-/// What lies beside the table: nothing, its metadata, or something damaged.
-pub fn metadata(out: &mut dyn Write, beside: Option<&Result<Metadata, TableError>>) -> io::Result<()> {
+/// What lies beside the table: nothing, its metadata or another table's, or something damaged.
+pub fn metadata(out: &mut dyn Write, beside: &Beside) -> io::Result<()> {
     match beside {
-        None => writeln!(out, "metadata: none beside the table")?,
-        Some(Err(error)) => writeln!(out, "metadata: unusable: {error}")?,
-        Some(Ok(metadata)) => {
+        Beside::Nothing => writeln!(out, "metadata: none beside the table")?,
+        Beside::Unusable(error) => writeln!(out, "metadata: unusable: {error}")?,
+        Beside::Foreign(problem) => {
+            writeln!(out, "metadata: NOT OF THIS TABLE, which is inspected alone: {problem}")?;
+        }
+        Beside::Own(metadata) => {
             writeln!(
                 out,
                 "metadata: fsot {}, seed {}, {} sweeps of a frame, {} slices per pixel and {} sweeps \
@@ -67,6 +70,9 @@ pub fn metadata(out: &mut dyn Write, beside: Option<&Result<Metadata, TableError
                 metadata.run.steps,
                 metadata.run.seconds
             )?;
+            if metadata.sha256.is_none() {
+                writeln!(out, "{:10}it does not say of which values it is, as since 2026-11-27", "")?;
+            }
             if let Some(bound) = metadata.bound {
                 let [before, after] = [bound.before, bound.after].map(|bound| bound.ratio_to_white_noise);
                 writeln!(

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde::Serialize;
 use serde_json::Value;
+use sha2::{Digest, Sha256};
 
 use super::making::Work;
 use super::set::PointSet;
@@ -84,10 +85,16 @@ impl Places {
         draw: impl FnOnce() -> Color,
     ) -> Result<(), Failure> {
         if let (Some(path), Some(beside)) = (&self.points, self.record()) {
-            set.save(path)?;
-            let crate_version = env!("CARGO_PKG_VERSION");
-            let text =
-                Written { format: FORMAT, crate_version, columns: COLUMNS, points: set.count(), record };
+            let coordinates = set.file(path)?;
+            output::write("--points", path, |out| out.write_all(&coordinates))?;
+            let text = Written {
+                format: FORMAT,
+                crate_version: env!("CARGO_PKG_VERSION"),
+                columns: COLUMNS,
+                points: set.count(),
+                sha256: Sha256::digest(&coordinates).iter().map(|byte| format!("{byte:02x}")).collect(),
+                record,
+            };
             output::write("--points", &beside, |out| {
                 serde_json::to_writer_pretty(&mut *out, &text)?;
                 writeln!(out)
@@ -112,6 +119,8 @@ struct Written<'a> {
     crate_version: &'static str,
     columns: [&'static str; 3],
     points: usize,
+    /// Of the file of coordinates, so that a record that belongs to another is found out.
+    sha256: String,
     #[serde(flatten)]
     record: &'a Record,
 }

@@ -48,10 +48,14 @@ impl PointSet {
             .collect()
     }
 
-    /// Writes `.csv` or `.npy`, whichever the name says.
-    pub fn save(&self, path: &Path) -> Result<(), Failure> {
-        let csv = output::has_ending(path, "csv");
-        output::write("--points", path, |out| if csv { self.write_csv(out) } else { self.write_npy(out) })
+    /// The bytes of a `.csv` or `.npy` file, whichever the name says.
+    pub fn file(&self, path: &Path) -> Result<Vec<u8>, Failure> {
+        let mut bytes = Vec::new();
+        match output::has_ending(path, "csv") {
+            true => self.write_csv(&mut bytes)?,
+            false => self.write_npy(&mut bytes)?,
+        }
+        Ok(bytes)
     }
 
     /// A header and a line per point; coordinates in the fewest digits that read back as the same `f32`.

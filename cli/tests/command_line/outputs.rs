@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 use fsot::{Extent, SampleTable};
@@ -95,6 +96,63 @@ fn what_is_read_is_not_overwritten() {
         std::os::unix::fs::symlink("same.csv", home.path().join("same.png")).unwrap();
         let both = "points two-class --slices 100000000 --out same.png --points same.csv";
         refused(home.path(), both, "are the same file");
+    }
+}
+
+/// Links that lead to a file that is not there yet are the file.
+#[cfg(unix)]
+#[test]
+fn links_to_one_new_file_are_the_same_file() {
+    let home = home();
+    for name in ["first.png", "second.csv"] {
+        std::os::unix::fs::symlink("goal", home.path().join(name)).unwrap();
+    }
+    let both = "points two-class --counts 8,8 --slices 4 --out first.png --points second.csv";
+    refused(home.path(), both, "--points second.csv and --out first.png are the same file");
+    run(home.path(), "points two-class --counts 8,8 --slices 4 --out first.png");
+    assert!(home.path().join("first.png").is_symlink());
+    assert!(
+        image::ImageReader::open(home.path().join("goal"))
+            .unwrap()
+            .with_guessed_format()
+            .unwrap()
+            .decode()
+            .is_ok()
+    );
+}
+
+/// A disk that is full after a kilobyte: what was there stays, and nothing is left.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_leaves_what_was_there() {
+    let home = home();
+    run(home.path(), "table --frames 1 --sweeps 1 --no-bound");
+    for (verb, files) in [
+        ("table --frames 1 --sweeps 2 --no-bound", &["table.npy"][..]),
+        ("inspect table.npy --integrands 2 --bound-slices 64 --out page.png", &["page.png"]),
+        ("import table.npy --out other.npy", &["other.npy"]),
+        ("points two-class --counts 512,512 --slices 4 --no-comparison --out page.png", &["page.png"]),
+        ("points stipple --picture picture.png --count 512 --slices 4 --points list.csv", &["list.csv"]),
+        ("points stipple --picture picture.png --count 512 --slices 4 --points list.npy", &["list.npy"]),
+    ] {
+        for file in files.iter().filter(|file| **file != "table.npy") {
+            fs::write(home.path().join(file), "what was here before").unwrap();
+        }
+        let contents = |name: &String| fs::read(home.path().join(name)).unwrap_or_default();
+        let before: Vec<(String, Vec<u8>)> =
+            names(home.path()).into_iter().map(|name| (name.clone(), contents(&name))).collect();
+        let program = env!("CARGO_BIN_EXE_fsot");
+        // Without the trap the system would kill the process.
+        let line = format!("trap '' XFSZ; ulimit -f 1; exec {program} {verb} --quiet");
+        let output = Command::new("sh").args(["-c", &line]).current_dir(home.path()).output().unwrap();
+        let (out, err) = texts(&output);
+        assert_eq!((output.status.code(), out.as_str()), (Some(1), ""), "{verb}: {err}");
+        // Of a table the metadata, which are larger than the disk as well.
+        let (name, _) = files[0].split_once('.').unwrap();
+        assert!(err.contains(name) && err.lines().count() == 1 && !err.contains(".fsot-"), "{verb}: {err}");
+        let after: Vec<(String, Vec<u8>)> =
+            names(home.path()).into_iter().map(|name| (name.clone(), contents(&name))).collect();
+        assert!(after == before, "{verb}: {:?}", names(home.path()));
     }
 }
 

@@ -8,6 +8,7 @@ use fsot::{Config, Until};
 use ndarray::Array2;
 use ndarray_npy::ReadNpyExt;
 use serde_json::Value;
+use sha2::Digest;
 use tempfile::tempdir;
 
 use crate::{command, names, run, texts};
@@ -54,6 +55,9 @@ fn how_they_were_made_lies_beside() {
     run(home.path(), "points two-class --counts 20,30 --slices 64 --seed 5 --points a.npy");
     let record = json(&home.path().join("a.points.json"));
     assert_eq!(record["format"], "fsot point set 1");
+    // Of the file, so that a record of another one is found out.
+    let hash = sha2::Sha256::digest(fs::read(home.path().join("a.npy")).unwrap());
+    assert_eq!(record["sha256"], hash.iter().map(|byte| format!("{byte:02x}")).collect::<String>());
     assert_eq!((&record["kind"], &record["points"]), (&"two-class".into(), &50.into()));
     assert_eq!(record["columns"], serde_json::json!(["x", "y", "label"]));
     assert_eq!((&record["flags"]["counts"][1], &record["flags"]["seed"]), (&30.into(), &5.into()));

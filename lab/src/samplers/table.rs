@@ -7,8 +7,8 @@ use super::{Sampler, WhiteNoise, mixed};
 /// Reads an optimised table at pixel `(x mod width, y mod height)` of frame `t mod frames`.
 ///
 /// What the table does not hold is filled in, and costs quality, never correctness:
-/// * samples beyond the table's `spp` come from the same table [displaced](Extent::displacement): block `k` of
-///   `spp` samples by the `k`-th point of the R2 sequence, so each block alone keeps its blue noise;
+/// * samples beyond the table's `spp` come from the same table [displaced](Extent::displacement): block `k`
+///   of `spp` samples by the `k`-th point of the R2 sequence, so each block alone keeps its blue noise;
 /// * dimensions beyond the table's are white noise.
 #[derive(Clone, Copy, Debug)]
 pub struct TableSampler<'t> {

@@ -1,6 +1,6 @@
 //! PNG: 1 to 16 bits, grey, colours or a palette, with or without alpha, row by row.
 
-use std::io::{BufRead, Seek};
+use std::io::{self, BufRead, Seek};
 use std::path::Path;
 
 use png::{BitDepth, ColorType, Decoder, DecodingError, Info, Limits, Reader, Transformations};
@@ -36,6 +36,11 @@ pub(super) fn read<const N: usize>(
     let [width, height] = [header.width as usize, header.height as usize];
     check_size(path, [width, height], options)?;
     let mut reader = decoder.read_info().map_err(refused)?;
+    // The decoder does not look, and would read beyond the end.
+    if reader.info().palette.as_ref().is_some_and(|palette| !palette.len().is_multiple_of(3)) {
+        let cut = io::Error::new(io::ErrorKind::InvalidData, "its palette ends within a colour");
+        return Err(refused(DecodingError::IoError(cut)));
+    }
     let (color, depth) = reader.output_color_type();
     let light = Light::of_png(reader.info(), options.transfer)
         .map_err(|what| PictureError::Encoding { path: path.into(), what })?;

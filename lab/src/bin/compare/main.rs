@@ -17,6 +17,7 @@ use clap::Parser;
 use fsot::kernel::TemporalKernel;
 use fsot::{Extent, SampleTable};
 use fsot_lab::figures::mean_and_error;
+use fsot_lab::names::{distinct, plain};
 use fsot_lab::program::{self, Failure};
 use fsot_lab::render::{
     Comparison, Film, ImageFilter, Reference, Scales, Scene, compare, demand, error_spectrum, render,
@@ -64,6 +65,10 @@ struct Args {
 fn main() -> ExitCode {
     program::main(run)
 }
+
+/// What tables are compared with.
+const WHITE_NOISE: &str = "white noise";
+const OWEN_SOBOL: &str = "Owen-Sobol'";
 
 /// A sampler's realisation with this seed.
 type Realise<'t> = Box<dyn Fn(u64) -> Box<dyn Sampler + 't> + 't>;
@@ -125,8 +130,8 @@ fn run(args: &Args) -> Result<(), Failure> {
     progress.inc(1);
 
     let mut contenders: Vec<(String, String, Realise)> = vec![
-        ("white noise".into(), String::new(), Box::new(|seed| Box::new(WhiteNoise::new(seed)))),
-        ("Owen-Sobol'".into(), String::new(), Box::new(|seed| Box::new(OwenSobol::new(seed)))),
+        (WHITE_NOISE.into(), String::new(), Box::new(|seed| Box::new(WhiteNoise::new(seed)))),
+        (OWEN_SOBOL.into(), String::new(), Box::new(|seed| Box::new(OwenSobol::new(seed)))),
     ];
     for (label, table) in &tables {
         let realise: Realise = Box::new(|seed| {
@@ -134,8 +139,10 @@ fn run(args: &Args) -> Result<(), Failure> {
         });
         contenders.push((label.clone(), notes(table, &scene, args.spp), realise));
     }
+    // Two labels may be one name of a file.
+    let files = distinct(contenders.iter().map(|(label, ..)| plain(label)), "-");
     let mut entries = Vec::new();
-    for (label, note, realise) in contenders {
+    for ((label, note, realise), file) in contenders.into_iter().zip(files) {
         progress.set_message(label.clone());
         let mut shown = None;
         let mut found = Vec::new();
@@ -145,7 +152,8 @@ fn run(args: &Args) -> Result<(), Failure> {
             shown.get_or_insert(film);
         }
         let film = shown.ok_or("give --repeats of at least 1")?;
-        film.save_exr(args.out.join(file_name(&scene, args.spp, &label)), scene.frames - 1)?;
+        let file = format!("{}-{}spp-{file}.exr", scene.name, args.spp);
+        film.save_exr(args.out.join(file), scene.frames - 1)?;
         entries.push(Entry { label, note, film, ratios: Ratios::mean(&found) });
         progress.inc(1);
     }
@@ -169,16 +177,15 @@ fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Tables with labels; two files of the same name are told apart by their number.
+/// Tables with labels, which are told apart by numbers where files have the same name, or that of what every
+/// table is compared with.
 fn load(paths: &[PathBuf]) -> Result<Vec<(String, SampleTable)>, Failure> {
-    let mut tables: Vec<(String, SampleTable)> = Vec::new();
-    for path in paths {
-        let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
-        let taken = tables.iter().any(|(other, _)| *other == name);
-        let label = if taken { format!("{name} #{}", tables.len() + 1) } else { name };
-        tables.push((label, SampleTable::load(path)?));
-    }
-    Ok(tables)
+    let stem = |path: &PathBuf| path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+    let others = [WHITE_NOISE, OWEN_SOBOL].map(String::from);
+    let skipped = others.len();
+    let labels = distinct(others.into_iter().chain(paths.iter().map(stem)), " #");
+    let tables = labels.into_iter().skip(skipped).zip(paths);
+    tables.map(|(label, path)| Ok((label, SampleTable::load(path)?))).collect()
 }
 
 /// What the table lacks for this scene, in the words of `TableSampler`.
@@ -191,11 +198,6 @@ fn notes(table: &SampleTable, scene: &Scene, spp: u32) -> String {
         notes.push(format!("{} of {spp} spp, rest displaced", table.extent().spp));
     }
     notes.join("; ")
-}
-
-fn file_name(scene: &Scene, spp: u32, label: &str) -> String {
-    let plain = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };
-    format!("{}-{spp}spp-{}.exr", scene.name, label.chars().map(plain).collect::<String>())
 }
 
 fn print_ratios(entries: &[Entry]) {

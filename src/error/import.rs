@@ -1,0 +1,157 @@
+//! What stands against making a table of somebody else's file.
+
+use thiserror::Error;
+
+use super::ExtentError;
+
+/// Why a file of numbers cannot become a table, and with which options it could.
+///
+/// Options are called as they are on the command line; those of
+/// [`ImportOptions`](crate::files::ImportOptions) have the same names without dashes.
+///
+/// ```
+/// use fsot::SampleTable;
+/// use fsot::files::{ImportError, ImportOptions, TableError};
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("bytes.dat");
+/// std::fs::write(&path, "0\n17\n255\n96\n")?;
+/// let error = SampleTable::import(&path, &ImportOptions::default()).unwrap_err();
+/// let TableError::Import { problem, .. } = error else { panic!("{error}") };
+/// assert!(matches!(problem, ImportError::Levels { suggested: 256, .. }));
+/// # Ok::<(), std::io::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ImportError {
+    /// The array holds something else than plain numbers.
+    #[error(
+        "its type {dtype} is no number of at most 64 bits: save an array of such numbers with numpy.save"
+    )]
+    Dtype {
+        /// The type as the file writes it.
+        dtype: String,
+    },
+    /// Not as many names as axes.
+    #[error("shape {shape:?} has {} axes, but --axes names {named}: name every axis", shape.len())]
+    AxesCount {
+        /// Shape of the file.
+        shape: Vec<usize>,
+        /// Names given.
+        named: usize,
+    },
+    /// A name stands twice.
+    #[error("--axes names {axis} twice: name each axis once")]
+    AxisTwice {
+        /// The axis.
+        axis: &'static str,
+    },
+    /// Two ways to say the same thing.
+    #[error("--axes and lengths of axes exclude each other: give --axes alone, or lengths alone")]
+    AxesAndLengths,
+    /// A table has five axes.
+    #[error(
+        "shape {shape:?} has more than 5 axes: give the lengths --frames, --height, --width, --spp and --dims"
+    )]
+    TooManyAxes {
+        /// Shape of the file.
+        shape: Vec<usize>,
+    },
+    /// The lengths that were given do not fit the numbers.
+    #[error(
+        "{values} numbers do not fill the lengths that are given, {given}: give lengths that divide them"
+    )]
+    Lengths {
+        /// Numbers in the file.
+        values: usize,
+        /// Product of the lengths.
+        given: usize,
+    },
+    /// The picture's sides could not be deduced.
+    #[error(
+        "{samples} samples make no square picture: give --width and --height, or for example \
+         --{axis} {length}"
+    )]
+    NoSquare {
+        /// Samples that are to be divided into rows and columns.
+        samples: usize,
+        /// A length that makes the rest a square, or a single row.
+        axis: &'static str,
+        /// That length.
+        length: usize,
+    },
+    /// There is more than a picture.
+    #[error("there are {times} samples for every pixel: give --frames {times}, or --spp {times}")]
+    FramesOrSamples {
+        /// Samples per pixel and frame, or frames.
+        times: usize,
+    },
+    /// A word in a text file.
+    #[error(
+        "line {line} has {text:?}, which is no number: give a .npy file, or numbers between blanks or commas"
+    )]
+    Number {
+        /// Line, from 1.
+        line: usize,
+        /// The word.
+        text: String,
+    },
+    /// Lines of a text file have unequal lengths.
+    #[error(
+        "line {line} has {given} numbers and the lines before it {expected}: \
+         give --dims, or write as many numbers on every line"
+    )]
+    Ragged {
+        /// Line, from 1.
+        line: usize,
+        /// Its numbers.
+        given: usize,
+        /// Numbers of every line before.
+        expected: usize,
+    },
+    /// A text file without numbers.
+    #[error("there are no numbers in it: give a .npy file, or numbers between blanks or commas")]
+    Empty,
+    /// A value is negative, not finite, or above 1 among fractions.
+    #[error(
+        "value number {at} is {value}: bring all values into [0, 1], or make whole numbers from 0 of them"
+    )]
+    Value {
+        /// Position in the file, from 0.
+        at: usize,
+        /// The value.
+        value: f64,
+    },
+    /// Whole numbers of which nobody says how many there could be.
+    #[error(
+        "its values are whole numbers up to {greatest}, neither each as often as the others nor of the whole \
+         range of their type: give --levels {suggested}, or another number of levels"
+    )]
+    Levels {
+        /// The greatest value.
+        greatest: f64,
+        /// The next power of two.
+        suggested: u64,
+    },
+    /// Levels are whole numbers below their number.
+    #[error(
+        "value number {at} is {value}, and no whole number below {levels}: \
+         give more --levels, or none for fractions in [0, 1]"
+    )]
+    NoLevel {
+        /// Position in the file, from 0.
+        at: usize,
+        /// The value.
+        value: f64,
+        /// Levels given.
+        levels: u64,
+    },
+    /// The lengths make no table.
+    #[error("as {shape:?} it cannot be a table: {problem}; name other --axes or lengths")]
+    Extent {
+        /// `[frame, y, x, sample, dim]`.
+        shape: [usize; 5],
+        /// Which axis, or how many values.
+        problem: ExtentError,
+    },
+}

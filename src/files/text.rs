@@ -1,0 +1,136 @@
+//! Numbers as text: one sample a line, or a row of a picture, between blanks, commas or semicolons.
+
+use std::fs::File;
+use std::io::{self, Read};
+
+use super::header::shortened;
+use crate::error::ImportError;
+
+/// Longest word that can be a number.
+const LONGEST: usize = 64;
+
+/// Why text was not read.
+pub(super) enum Unread {
+    Io(io::Error),
+    Import(ImportError),
+}
+
+impl From<io::Error> for Unread {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
+}
+
+/// The numbers of a text file, and how many stand on a line.
+pub(super) struct Numbers {
+    pub(super) values: Vec<f64>,
+    /// Numbers on every line; `Err` tells the first line that has another count than those before.
+    pub(super) columns: Result<usize, ImportError>,
+}
+
+/// A text on its way through its bytes.
+#[derive(Default)]
+struct Reader {
+    values: Vec<f64>,
+    /// The word that has begun.
+    word: Vec<u8>,
+    /// Line, from 0.
+    line: usize,
+    /// Numbers on this line so far, and on those before.
+    count: usize,
+    columns: usize,
+    ragged: Option<ImportError>,
+    /// What is on the line is not read: after `#` or `%`, or the names of columns.
+    skipping: bool,
+}
+
+/// Reads numbers up to the end. Blank lines, what stands behind `#` or `%`, and a first line of words are
+/// passed over.
+pub(super) fn read(mut file: File) -> Result<Numbers, Unread> {
+    let mut reader = Reader::default();
+    let mut block = vec![0; 1 << 16];
+    let mut begun = false;
+    loop {
+        let count = match file.read(&mut block) {
+            Ok(count) => count,
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+            Err(error) => return Err(error.into()),
+        };
+        let mut bytes = &block[..count];
+        if !begun {
+            // What some editors begin a file with.
+            bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+            begun = true;
+        }
+        reader.values.try_reserve(bytes.len() / 2 + 1).map_err(io::Error::from)?;
+        bytes.iter().try_for_each(|&byte| reader.take(byte)).map_err(Unread::Import)?;
+        if count == 0 {
+            break;
+        }
+    }
+    reader.take(b'\n').map_err(Unread::Import)?;
+    if reader.values.is_empty() {
+        return Err(Unread::Import(ImportError::Empty));
+    }
+    let columns = reader.ragged.map_or(Ok(reader.columns), Err);
+    Ok(Numbers { values: reader.values, columns })
+}
+
+impl Reader {
+    fn take(&mut self, byte: u8) -> Result<(), ImportError> {
+        match byte {
+            b'\n' => {
+                self.end_word()?;
+                self.end_line();
+            }
+            _ if self.skipping => {}
+            b' ' | b'\t' | b'\r' | b'\x0c' | b',' | b';' => self.end_word()?,
+            b'#' | b'%' => {
+                self.end_word()?;
+                self.skipping = true;
+            }
+            _ if self.word.len() < LONGEST => self.word.push(byte),
+            _ => return Err(self.no_number()),
+        }
+        Ok(())
+    }
+
+    fn end_word(&mut self) -> Result<(), ImportError> {
+        if self.word.is_empty() {
+            return Ok(());
+        }
+        let number = std::str::from_utf8(&self.word).ok().and_then(|word| word.parse().ok());
+        match number {
+            Some(number) => {
+                self.values.push(number);
+                self.count += 1;
+            }
+            // Names of columns above all numbers.
+            None if self.values.is_empty() && self.line == 0 && self.word[0].is_ascii_alphabetic() => {
+                self.skipping = true;
+            }
+            None => return Err(self.no_number()),
+        }
+        self.word.clear();
+        Ok(())
+    }
+
+    fn end_line(&mut self) {
+        self.line += 1;
+        let count = std::mem::take(&mut self.count);
+        self.skipping = false;
+        if count == 0 {
+            return;
+        }
+        if self.columns == 0 {
+            self.columns = count;
+        } else if self.columns != count && self.ragged.is_none() {
+            self.ragged = Some(ImportError::Ragged { line: self.line, given: count, expected: self.columns });
+        }
+    }
+
+    fn no_number(&self) -> ImportError {
+        let text = shortened(String::from_utf8_lossy(&self.word).into_owned());
+        ImportError::Number { line: self.line + 1, text }
+    }
+}
