@@ -62,7 +62,7 @@ pub struct ClassSamples {
     /// Samples and their weights, in any order; each sample once at most, weights from 0 to 1. Sample `s` of
     /// a site has the number `extent.site_index(site) * extent.spp + s`.
     pub samples: Vec<(u32, f64)>,
-    /// Weight of the class beside the others of the family; positive.
+    /// Weight of the class beside the others of the family; from 1e-12 to 1e6.
     pub weight: f64,
 }
 

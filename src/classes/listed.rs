@@ -21,7 +21,7 @@ use crate::table::extent::Extent;
 pub struct LabelSet {
     /// The labels whose samples it holds.
     pub labels: Vec<u32>,
-    /// Weight of the pull on its samples beside that of the other classes; positive.
+    /// Weight of the pull on its samples beside that of the other classes; from 1e-12 to 1e6.
     pub weight: f64,
 }
 
@@ -57,7 +57,7 @@ pub(crate) struct Listed {
 }
 
 pub(super) fn check_weight(name: &'static str, value: f64) -> Result<(), ClassError> {
-    Ok(RangeError::check(value > 0.0 && value <= 1e6, name, value, "above 0, at most 1e6")?)
+    Ok(RangeError::check((1e-12..=1e6).contains(&value), name, value, "from 1e-12 to 1e6")?)
 }
 
 impl Listed {

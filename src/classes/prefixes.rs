@@ -64,7 +64,7 @@ pub enum PrefixLengths {
 pub struct PrefixLength {
     /// Samples, from 1 to all.
     pub length: usize,
-    /// Weight of the pull on its samples beside that of the other prefixes; positive.
+    /// Weight of the pull on its samples beside that of the other prefixes; from 1e-12 to 1e6.
     pub weight: f64,
 }
 

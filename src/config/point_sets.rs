@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::classes::{Classes, LabelSet, PrefixLengths, PrefixOf};
 use crate::config::{Config, Descent, Role, Schedule, Term};
-use crate::table::extent::{Extent, MOST_VALUES};
+use crate::table::extent::{Extent, MOST_DIMS, MOST_VALUES};
 #[cfg(feature = "image")]
 use crate::targets::Inks;
 use crate::targets::{Density, Target};
@@ -120,7 +120,7 @@ impl Config {
         let classes = Classes::Prefixes { of: PrefixOf::Table, lengths };
         let mut terms = vec![whole(classes.clone(), Target::UniformCube, dims)];
         if dims > 1 {
-            terms.extend((0..dims).map(|dim| Term {
+            terms.extend((0..dims.min(MOST_DIMS)).map(|dim| Term {
                 dims: vec![dim],
                 weight: MARGINAL,
                 ..whole(classes.clone(), Target::UniformCube, dims)
@@ -146,5 +146,7 @@ pub(crate) fn weight_of(size: f64) -> f64 {
 
 /// A term over all dimensions.
 pub(crate) fn whole(classes: Classes, target: Target, dims: usize) -> Term {
-    Term { classes, target, dims: (0..dims).collect(), weight: 1.0, role: Role::Descend }
+    // More dimensions are refused when the configuration is used, and not listed here.
+    let dims = (0..dims.min(MOST_DIMS)).collect();
+    Term { classes, target, dims, weight: 1.0, role: Role::Descend }
 }

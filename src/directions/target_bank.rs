@@ -54,8 +54,7 @@ impl TargetBank {
             .map(|theta| {
                 // The law belongs to the direction as it will be used, rounded.
                 let direction: Vec<f64> = theta.iter().map(|&component| component.into()).collect();
-                let law = target.project(&direction);
-                if law.is_sound() { Ok(law.into_pieces()) } else { Err(TargetError::BadLaw { direction }) }
+                Ok(target.project(&direction).sound(&direction)?.into_pieces())
             })
             .collect();
         Ok(Self { theta, dims, laws: laws? })

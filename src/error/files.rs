@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use super::ExtentError;
+use super::{ExtentError, Short};
 
 /// A table that cannot be made, read or written.
 ///
@@ -30,9 +30,9 @@ pub enum TableError {
     },
     /// A value lies outside `[0, 1)` or is not finite.
     #[error(
-        "the value at [frame {}, y {}, x {}, sample {}, dim {}] is {value}: \
+        "the value at [frame {}, y {}, x {}, sample {}, dim {}] is {}: \
          values must lie in [0, 1)",
-        at[0], at[1], at[2], at[3], at[4]
+        at[0], at[1], at[2], at[3], at[4], Short::from(value)
     )]
     Value {
         /// `[frame, y, x, sample, dim]`.
@@ -171,9 +171,9 @@ pub enum FormatError {
     },
     /// A value lies outside `[0, 1)` or is not finite.
     #[error(
-        "the value at [frame {}, y {}, x {}, sample {}, dim {}] is {value}: \
+        "the value at [frame {}, y {}, x {}, sample {}, dim {}] is {}: \
          bring all values into [0, 1) and save them again",
-        at[0], at[1], at[2], at[3], at[4]
+        at[0], at[1], at[2], at[3], at[4], Short::from(value)
     )]
     Value {
         /// `[frame, y, x, sample, dim]`.

@@ -107,7 +107,12 @@ impl Pieces {
     pub(crate) fn of_density(places: &[f64], densities: &[f64]) -> Self {
         let is_density = densities.iter().all(|&density| density >= 0.0 && density.is_finite());
         let mass = densities.iter().sum::<f64>();
-        if places.len() != densities.len() || !places.is_sorted() || !is_density || mass == 0.0 {
+        if places.len() != densities.len()
+            || !places.is_sorted()
+            || !is_density
+            || mass == 0.0
+            || mass.is_infinite()
+        {
             return Self::unsound();
         }
         let pairs = || places.windows(2).zip(densities.windows(2));

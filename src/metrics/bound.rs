@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::error::MeasureError;
 use super::samples::{Samples, Values};
+use crate::error::RangeError;
 use crate::files::metadata::BoundEstimate;
 use crate::laws::distance::Workspace;
 use crate::objective::{Objective, Slice};
@@ -36,6 +37,8 @@ pub struct Bound {
 
 /// Most subsets that share a direction; the standard error is taken over directions.
 const CLUSTER: usize = 32;
+/// Most slices of an estimate: its error is a few millionths then.
+pub(super) const MOST_SLICES: usize = 1 << 24;
 /// Fewest directions.
 const DIRECTIONS: usize = 8;
 
@@ -49,7 +52,7 @@ impl Bound {
     /// count.
     ///
     /// # Errors
-    /// Samples whose shape is not that of the objective; `slices` of 0.
+    /// Samples whose shape is not that of the objective; `slices` of 0 or above 2^24.
     pub fn measure<'a>(
         samples: impl Into<Samples<'a>>,
         objective: &Objective,
@@ -60,6 +63,8 @@ impl Bound {
         if slices == 0 {
             return Err(MeasureError::Nothing { what: "slices" });
         }
+        let is_good = slices <= MOST_SLICES;
+        RangeError::check(is_good, "the number of slices", slices as f64, "of at most 16777216")?;
         let Extent { frames, height, width, spp } = objective.extent();
         let [given, expected] =
             [samples.shape(), [frames, height, width, spp, objective.dims()]].map(Box::new);

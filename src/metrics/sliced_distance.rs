@@ -2,11 +2,12 @@
 
 use rayon::prelude::*;
 
+use super::bound::MOST_SLICES;
 use super::coordinates::Coordinates;
 use super::error::MeasureError;
 use super::samples::Samples;
 use crate::directions::frames::spread;
-use crate::error::TargetError;
+use crate::error::{RangeError, TargetError};
 use crate::laws::distance::Workspace;
 use crate::targets::Target;
 
@@ -53,6 +54,8 @@ impl SlicedDistance {
         if directions == 0 {
             return Err(MeasureError::Nothing { what: "directions" });
         }
+        let is_good = directions <= MOST_SLICES;
+        RangeError::check(is_good, "the number of directions", directions as f64, "of at most 16777216")?;
         let scales = target.scales(dims.len());
         let squared = (0..directions).into_par_iter().map(|index| {
             let direction = spread(dims.len(), index, directions);
@@ -60,12 +63,10 @@ impl SlicedDistance {
                 direction.iter().zip(&scales).map(|(component, scale)| component * scale).collect();
             let along = |point: &[f64]| point.iter().zip(&direction).map(|(x, theta)| x * theta).sum();
             let projections: Vec<f64> = points.points().map(along).collect();
-            let law = target.project(&direction);
-            if !law.is_sound() {
-                return Err(TargetError::BadLaw { direction });
-            }
+            let law = target.project(&direction).sound(&direction)?;
             let displacements = &mut vec![0.0; projections.len()];
-            Ok(Workspace::default().displacements(&law, &projections, None, displacements))
+            let squared = Workspace::default().displacements(&law, &projections, None, displacements);
+            Ok::<_, TargetError>(squared)
         });
         // Collected first: the order of the sum must not depend on the threads.
         let squared: Vec<f64> = squared.collect::<Result<_, _>>()?;

@@ -8,7 +8,7 @@ mod run;
 
 pub use self::report::{RunReport, SliceStep, StepReport};
 use crate::classes::Demand;
-use crate::config::{Config, Role, Until};
+use crate::config::{Config, Role, Until, check_step};
 use crate::error::ConfigError;
 use crate::objective::Objective;
 use crate::slices::{Picked, Slices, Step};
@@ -155,14 +155,18 @@ impl Optimizer {
     /// they see what the others have made of it.
     ///
     /// For schedules of your own; [`Optimizer::run`] follows those of the configuration.
-    pub fn step(&mut self, rate: f64, balance: f64) -> SliceStep {
-        rayon::scope(|_| self.step_in_pool(rate, balance))
+    ///
+    /// # Errors
+    /// A `rate` or a `balance` outside of `0..=1e6` ([`ConfigError::Range`]). Nothing is changed then.
+    pub fn step(&mut self, rate: f64, balance: f64) -> Result<SliceStep, ConfigError> {
+        check_step(rate, balance)?;
+        Ok(rayon::scope(|_| self.step_in_pool(rate, balance)))
     }
 
     fn step_in_pool(&mut self, rate: f64, balance: f64) -> SliceStep {
         let picks = [Picked::Batch(Role::Descend), Picked::Batch(Role::Balance)];
         let (displacement, slices) = self.advance(self.steps, &picks, rate, balance);
-        self.steps += 1;
+        self.steps = self.steps.wrapping_add(1);
         SliceStep { displacement, slices }
     }
 
@@ -186,8 +190,10 @@ impl Optimizer {
     /// Returns the root mean square pull on a coordinate.
     ///
     /// # Errors
-    /// A descended term that has no closed form ([`ConfigError::NotInClosedForm`]).
+    /// A `rate` or a `balance` outside of `0..=1e6` ([`ConfigError::Range`]); a descended term that has no
+    /// closed form ([`ConfigError::NotInClosedForm`]). Nothing is changed then.
     pub fn sweep(&mut self, rate: f64, balance: f64) -> Result<f64, ConfigError> {
+        check_step(rate, balance)?;
         rayon::scope(|_| self.sweep_in_pool(rate, balance))
     }
 
