@@ -41,7 +41,7 @@ pub trait ClassFamily: std::fmt::Debug + Send + Sync {
     /// Name for messages and for a serialised [`crate::Config`].
     fn name(&self) -> &str;
 
-    /// Number of classes, for tables of this extent.
+    /// Number of classes, for tables of this extent; at most 2^24.
     fn members(&self, extent: &Extent) -> usize;
 
     /// The filter of class `member`, below [`ClassFamily::members`].

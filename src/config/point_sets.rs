@@ -95,8 +95,9 @@ impl Config {
     /// [`Inks::counts`] says how many points each ink has.
     #[cfg(feature = "image")]
     pub fn color_stippling(count: usize, picture: &Inks) -> Self {
-        let counts = picture.counts(count);
-        let labels = labels(&counts);
+        // More points than a table holds are refused when the configuration is used, and not listed here.
+        let counts = picture.counts(count.min(MOST_VALUES));
+        let labels = if count <= MOST_VALUES { labels(&counts) } else { [].into() };
         let mut terms = Vec::new();
         for set in LabelSubsets::Every.list(counts.len()) {
             let size: usize = set.iter().map(|&ink| counts[ink as usize]).sum();

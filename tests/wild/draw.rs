@@ -94,7 +94,7 @@ impl<R: Rng> Draw<R> {
 
     fn dims(&mut self) -> usize {
         let most = self.pick(&[1, 2, 2, 2, 3, 4, 4, 9]);
-        if self.chance(0.5 * self.odd) { self.pick(&[16, 64, 65]) } else { self.len(most) }
+        if self.chance(0.5 * self.odd) { self.pick(&[16, 32, 65]) } else { self.len(most) }
     }
 
     fn dims_of(&mut self, dims: usize) -> Vec<usize> {

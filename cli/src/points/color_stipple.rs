@@ -15,6 +15,7 @@ use super::likeness::Likeness;
 use super::making::{Figures, make, tell};
 use super::page::{sheet, sheet_size};
 use super::set::PointSet;
+use crate::console;
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use crate::{Ended, Failure, Shared};
@@ -118,7 +119,8 @@ impl Figures for InkLikenesses {
         writeln!(out, "{} sets of inks", self.sets)?;
         for InkLikeness { ink, likeness } in &self.inks {
             let Likeness { points, correlation, strays, advice, .. } = likeness;
-            writeln!(out, "{ink}: {points} points, correlation {correlation:.4}, strays {strays}")?;
+            let points = console::points(*points);
+            writeln!(out, "{ink}: {points}, correlation {correlation:.4}, strays {strays}")?;
             advice.iter().try_for_each(|advice| writeln!(out, "  {advice}"))?;
         }
         Ok(())

@@ -8,9 +8,9 @@ use fsot::{Config, Optimizer, SampleTable, Until};
 use serde::Serialize;
 
 use super::files::Places;
-use crate::console::Console;
+use crate::console::{self, Console};
 use crate::progress::Progress;
-use crate::{Ended, Failure, Shared, run};
+use crate::{Ended, Failure, Shared, advice, run};
 
 /// Points that a run has made.
 pub struct Made {
@@ -43,9 +43,11 @@ impl Work {
 /// Optimises points by so many slices per class, or until a signal comes.
 pub fn make(config: Config, slices: u64, progress: &Progress) -> Result<Made, Failure> {
     let begin = Instant::now();
-    let mut optimizer = Optimizer::new(config)?;
+    let advised = |failure| advice::with_flags(failure, advice::of_points);
+    let mut optimizer = Optimizer::new(config).map_err(|error| advised(error.into()))?;
     let planning_seconds = begin.elapsed().as_secs_f64();
-    let report = run::observed(&mut optimizer, Until::SlicesPerClass(slices), progress)?;
+    let until = Until::SlicesPerClass(slices);
+    let report = run::observed(&mut optimizer, until, progress).map_err(advised)?;
     let work = Work { planning_seconds, run: RunRecord::from(&report) };
     Ok(Made { table: optimizer.into_table(), work })
 }
@@ -80,7 +82,8 @@ pub fn tell<F: Figures>(
             if *ended_early { format!(", stopped early after {steps} steps") } else { String::new() };
         writeln!(
             out,
-            "{points} points, planned in {planning_seconds:.2} s, optimised in {seconds:.2} s{stopped}"
+            "{}, planned in {planning_seconds:.2} s, optimised in {seconds:.2} s{stopped}",
+            console::points(points)
         )?;
         match figures {
             Some(figures) => figures.words(out)?,

@@ -1,16 +1,17 @@
 //! Numbers at the ends of their ranges: what is accepted ends in time and does what it says, the rest is
 //! refused in words.
 
+mod sizes;
+
 use std::ops::ControlFlow;
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
-use fsot::classes::{Classes, Demand, FilterForm, PrefixLengths};
-use fsot::config::{Descent, Domain, LabelSubsets, Role, Schedule, Slicing, Sweeps, Term};
+use fsot::classes::{Classes, FilterForm};
+use fsot::config::{Descent, Domain, Role, Schedule, Slicing, Sweeps, Term};
 use fsot::kernel::{SpatialKernel, SpatialTap, Tap, TemporalKernel, autocorrelation};
-use fsot::metrics::{Bound, Integrands};
-use fsot::targets::{Measure, Projected, Target};
-use fsot::{Config, ConfigError, Extent, Kernel, Objective, Optimizer, Site, Until};
+use fsot::targets::{Density, Measure, PointCloud, Projected, Target};
+use fsot::{Config, ConfigError, Extent, Kernel, Optimizer, Until};
 
 const TILE: Extent = Extent::still(8, 8);
 
@@ -237,78 +238,20 @@ fn a_run_of_some_seconds_keeps_them_also_under_wide_kernels() {
     }
 }
 
+/// Directions are to be finite; what others have is no panic.
 #[test]
-fn absurd_sizes_are_refused_before_anything_is_made() {
-    let refused = |config: Config| Optimizer::new(config).unwrap_err().to_string();
-    for words in [
-        refused(Config::classes(&[usize::MAX], 2, &LabelSubsets::EachAndAll)),
-        refused(Config::classes(&[usize::MAX; 3], 2, &LabelSubsets::Every)),
-        refused(Config::classes(&[16], usize::MAX, &LabelSubsets::Every)),
-        refused(Config::progressive(16, usize::MAX, PrefixLengths::PowersOfTwo)),
-        refused(Config::progressive(usize::MAX, usize::MAX, PrefixLengths::Every)),
-        refused(Config::point_set(usize::MAX, 2, vec![])),
-        refused(Config::new(Extent::animation(usize::MAX, usize::MAX, usize::MAX).with_spp(usize::MAX), 2)),
-    ] {
-        assert!(words.contains(": "), "{words}");
-    }
-}
-
-#[test]
-fn the_bound_takes_no_more_slices_than_it_can() {
-    in_time(20, || {
-        let config = Config::new(TILE, 2);
-        let table = Optimizer::new(config.clone()).unwrap().into_table();
-        let error = Bound::measure(&table, &Objective::new(&config).unwrap(), 0, usize::MAX).unwrap_err();
-        assert!(error.to_string().contains(": give"), "{error}");
-    });
-}
-
-#[test]
-fn integrands_of_many_dimensions_are_drawn_or_refused() {
-    for dims in [64, 65, 1000, usize::MAX] {
-        in_time(20, move || match Integrands::random(dims, 4, 0) {
-            Ok(integrands) => assert_eq!(integrands.iter().count(), 16),
-            Err(error) => assert!(error.to_string().contains(": "), "{error}"),
-        });
-    }
-    assert!(Integrands::random(2, usize::MAX, 0).is_err());
-}
-
-#[test]
-fn a_demand_for_a_dimension_without_end_is_refused() {
-    for dimension in [64, usize::MAX] {
-        let demand = Demand::new([1, 8, 8], vec![true; 64], vec![vec![0, dimension]]);
-        let error = demand.and_then(|demand| {
-            assert!(demand.dims() > 64);
-            Optimizer::for_demand(Config::new(TILE, 2), &demand)
-        });
-        assert!(matches!(error.unwrap_err(), ConfigError::DemandGroup { group: 0, .. }));
-    }
-}
-
-#[test]
-fn extents_answer_whatever_they_are() {
-    let empty = Extent { frames: 0, height: 0, width: 0, spp: 0 };
-    assert_eq!(empty.site(5), Site { frame: 5, y: 0, x: 0 });
-    let origin = Site { frame: 0, y: 0, x: 0 };
-    assert_eq!(empty.wrapped(origin, (1, -1, i64::MIN)), origin);
-    let endless = Extent { frames: usize::MAX, height: usize::MAX, width: usize::MAX, spp: usize::MAX };
-    assert_eq!((endless.sites(), endless.samples()), (usize::MAX, usize::MAX));
-    let at = Site { frame: usize::MAX, y: usize::MAX, x: 3 };
-    _ = (endless.site_index(at), endless.wrapped(at, (i64::MAX, i64::MIN, 1)));
-    assert_eq!(TILE.wrapped(at, (i64::MAX, i64::MIN, 1)), Site { frame: 0, y: 7, x: 4 });
-}
-
-#[test]
-fn slices_of_any_step_are_drawn() {
-    in_time(20, || {
-        let objective = Objective::new(&Config::new(TILE, 2)).unwrap();
-        let usual = objective.draw(1, 5, Role::Descend).len();
-        for step in [u64::MAX, u64::MAX - 1, 1 << 63, 1 << 60, 1 << 53] {
-            let drawn = objective.draw(1, step, Role::Descend).len();
-            assert!(drawn.abs_diff(usual) <= 16, "step {step}: {drawn} slices instead of {usual}");
+fn laws_along_no_direction_are_no_panic() {
+    let density = Target::Density(Density::new(2, 2, vec![1.0; 4]).unwrap().into());
+    let cloud = Target::Cloud(PointCloud::new(2, vec![0.5; 4]).unwrap().into());
+    for target in [Target::UniformCube, density, cloud] {
+        for odd in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, 1e300, 5e-324, 0.0] {
+            for direction in [[odd, 0.5], [odd, odd], [0.5, -odd]] {
+                let law = target.project(&direction);
+                _ = (law.support(), law.mean(), law.cdf(0.5), law.quantile(0.5), law.cell_mean(0.2, 0.4));
+                _ = (law.cell_means(3).count(), law.w1_cell(0.1, 0.9, 0.5));
+            }
         }
-    });
+    }
 }
 
 /// The law of a measure that is none on the unit cube.
