@@ -63,6 +63,14 @@ pub enum ExtentError {
         /// Number of values asked for (saturating).
         values: u64,
     },
+    /// More than memory holds.
+    #[error("{what} takes {bytes} bytes, which there are not: give a smaller extent, or fewer dimensions")]
+    NoMemory {
+        /// What takes them.
+        what: &'static str,
+        /// How many.
+        bytes: usize,
+    },
     /// More dimensions than a sample can have.
     #[error("dims is {dims}: give a value of at most {most}")]
     TooManyDims {

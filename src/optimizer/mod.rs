@@ -14,6 +14,7 @@ use crate::objective::Objective;
 use crate::slices::{Picked, Slices, Step};
 use crate::sweeps::{MeanSquare, Motion, Sweeper};
 use crate::table::SampleTable;
+use crate::table::extent::check_memory;
 
 /// Optimises a table of white noise, or a given one.
 ///
@@ -68,12 +69,25 @@ impl Config {
     }
 }
 
+/// Bytes that a run takes for each of the table's, about.
+const ROOM: usize = 11;
+
+/// Refuses a table that is too large for this machine's memory before anything is made of it.
+fn check_room(config: &Config) -> Result<(), ConfigError> {
+    let Config { extent, dims, .. } = *config;
+    extent.validate(dims)?;
+    let table = size_of::<f32>() * extent.samples() * dims;
+    Ok(check_memory("optimising the table", ROOM.saturating_mul(table))?)
+}
+
 impl Optimizer {
     /// Starts from white noise; samples whose target is a density or a cloud start from draws of it.
     ///
     /// # Errors
-    /// Whatever [`Objective::new`] refuses, and descent parameters outside their ranges.
+    /// Whatever [`Objective::new`] refuses, descent parameters outside their ranges, and a table of which
+    /// memory does not hold what a run takes.
     pub fn new(config: Config) -> Result<Self, ConfigError> {
+        check_room(&config)?;
         let objective = Objective::new(&config)?;
         Self::with(config, objective)
     }
@@ -86,6 +100,7 @@ impl Optimizer {
     /// # Errors
     /// Whatever [`Objective::for_demand`] refuses, and descent parameters outside their ranges.
     pub fn for_demand(config: Config, demand: &Demand) -> Result<Self, ConfigError> {
+        check_room(&config)?;
         let objective = Objective::for_demand(&config, demand)?;
         Self::with(config, objective)
     }

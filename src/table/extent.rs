@@ -146,6 +146,16 @@ impl Extent {
     }
 }
 
+/// Refuses what the system would not give memory for. It is asked for that and gets it back at once; systems
+/// that promise more than they have refuse what is beyond all of it.
+pub(crate) fn check_memory(what: &'static str, bytes: usize) -> Result<(), ExtentError> {
+    let mut room = Vec::<u8>::new();
+    let reserved = room.try_reserve_exact(bytes);
+    // Else the compiler may find that nobody uses it, and not ask.
+    std::hint::black_box(room.as_ptr());
+    reserved.map_err(|_| ExtentError::NoMemory { what, bytes })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -174,6 +184,14 @@ mod tests {
         let corner = Site { frame: 0, y: 0, x: 0 };
         assert_eq!(extent.wrapped(corner, (-1, -1, -1)), Site { frame: 2, y: 4, x: 6 });
         assert_eq!(extent.wrapped(corner, (-7, 12, 16)), Site { frame: 2, y: 2, x: 2 });
+    }
+
+    #[test]
+    fn what_no_memory_holds_is_refused() {
+        let bytes = usize::MAX / 4;
+        assert_eq!(check_memory("a table", 1 << 20), Ok(()));
+        let error = check_memory("a table", bytes).unwrap_err();
+        assert_eq!(error, ExtentError::NoMemory { what: "a table", bytes });
     }
 
     #[test]

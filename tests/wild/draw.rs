@@ -71,8 +71,7 @@ impl<R: Rng> Draw<R> {
     /// A number from 1 to some, or an odd one.
     pub fn count(&mut self, most: usize) -> usize {
         if self.chance(self.odd) {
-            let odd =
-                [0, usize::MAX, usize::MAX / 2, 1 << 31, (1 << 31) - 1, 1 << 32, 1000, 65_537, 1_000_000];
+            let odd = [0, usize::MAX, usize::MAX / 2, 1 << 31, 1 << 32, 1000, 65_537, 1_000_000];
             return self.pick(&odd);
         }
         1 + self.below(most)
