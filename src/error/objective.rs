@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::{ConfigError, Short};
+use super::{ConfigError, Short, TargetError};
 
 /// A question that an objective cannot answer.
 ///
@@ -73,6 +73,9 @@ pub enum SliceError {
         /// Components expected.
         expected: usize,
     },
+    /// The target has no law along it.
+    #[error(transparent)]
+    Target(#[from] TargetError),
     /// A number that cannot be used.
     #[error("{what} is {}: give {expected}", Short::from(value))]
     Value {

@@ -154,7 +154,8 @@ impl Pieces {
 
     /// The piece where the distribution function reaches `u`.
     fn piece(&self, u: f64) -> usize {
-        self.knots.partition_point(|knot| knot.below < u).clamp(1, (self.knots.len() - 1).max(1)) - 1
+        self.knots.partition_point(|knot| knot.below < u).clamp(1, self.knots.len().saturating_sub(1).max(1))
+            - 1
     }
 
     pub(crate) fn quantile(&self, u: f64) -> f64 {
