@@ -92,6 +92,11 @@ impl Projected {
         Self::of_pieces(Pieces::of_density(places, densities))
     }
 
+    /// What stands for no law: all of it is NaN, and it is refused when it is used.
+    pub(crate) fn none() -> Self {
+        Self::from_samples(Vec::new())
+    }
+
     /// As pieces, for the optimiser.
     pub(crate) fn into_pieces(self) -> Pieces {
         match self.0 {

@@ -52,8 +52,8 @@ impl Bound {
     /// count.
     ///
     /// # Errors
-    /// Samples whose shape is not that of the objective; `slices` of 0 or above 2^24; a target of the caller's
-    /// own that has no law along some direction.
+    /// Samples whose shape is not that of the objective; `slices` of 0 or above 2^24; a target of the
+    /// caller's own that has no law along some direction.
     pub fn measure<'a>(
         samples: impl Into<Samples<'a>>,
         objective: &Objective,

@@ -69,8 +69,8 @@ impl Config {
     }
 }
 
-/// Bytes that a run takes for each of the table's, about.
-const ROOM: usize = 11;
+/// Bytes that any run takes for each of the table's, at the least.
+const ROOM: usize = 4;
 
 /// Refuses a table that is too large for this machine's memory before anything is made of it.
 fn check_room(config: &Config) -> Result<(), ConfigError> {
