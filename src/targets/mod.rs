@@ -62,9 +62,9 @@ impl Target {
     /// The law of `x·direction`, where `x` follows this target and `D = direction.len()`.
     ///
     /// The direction need not be a unit vector: its components must be finite, with a finite sum of absolute
-    /// values, and may have any sign. A zero or empty direction gives the point mass at 0. Others have no law:
-    /// theirs is NaN, and refused when it is used; so is a density's where that sum is not from 1e-100 to
-    /// 1e100.
+    /// values, and may have any sign. A zero or empty direction gives the point mass at 0. Others have no
+    /// law: theirs is NaN, and refused when it is used; so is a density's where that sum is not from 1e-100
+    /// to 1e100.
     ///
     /// Cube: O(`D`·grid), for a grid of at most eight pieces up to `D` = 4 and of some hundreds beyond or
     /// where a component is below 1e-4 of the sum. Density: O(pixels). Cloud: O(points · log points). See
