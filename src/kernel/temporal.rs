@@ -110,7 +110,8 @@ fn perceptual(fps: f64) -> Result<Vec<f64>, KernelError> {
         return Err(range("fps", fps, "above 0, at most 10000"));
     }
     let len = (SECONDS * fps).ceil() as usize;
-    if len == 1 {
+    // None, of the least positive numbers.
+    if len <= 1 {
         return Ok(vec![1.0]);
     }
     let spacing = SECONDS / (len - 1) as f64;
