@@ -33,12 +33,12 @@ fn size(criterion: &mut Criterion) {
         let extent = Extent { frames, height: side, width: side, spp };
         let mut optimizer = Optimizer::new(Config::new(extent, 2)).expect("the cases are valid");
         group.throughput(Throughput::Elements(selected::per_step(optimizer.objective()) as u64));
-        let before = optimizer.step(0.5, 1.0).displacement;
+        let before = optimizer.step(0.5, 1.0).unwrap().displacement;
         group.bench_function(BenchmarkId::from_parameter(&name), |bencher| {
-            bencher.iter(|| optimizer.step(0.5, 1.0));
+            bencher.iter(|| optimizer.step(0.5, 1.0).unwrap());
         });
         // An epoch, so that every sample has moved.
-        let after = (0..16).map(|_| optimizer.step(0.5, 1.0).displacement).sum::<f64>() / 16.0;
+        let after = (0..16).map(|_| optimizer.step(0.5, 1.0).unwrap().displacement).sum::<f64>() / 16.0;
         assert!(after < before, "{name}: displacement {before} to {after}");
         let table = optimizer.into_table();
         assert!(table.values().iter().all(|value| (0.0..1.0).contains(value)), "{name} left the square");

@@ -24,14 +24,15 @@ fn slice(criterion: &mut Criterion) {
         for size in SIZES {
             let mut optimizer = Optimizer::new(config(size, dims)).expect("the cases are valid");
             let SliceStep { displacement: before, slices, .. } =
-                one_thread.install(|| optimizer.step(0.5, 1.0));
+                one_thread.install(|| optimizer.step(0.5, 1.0).unwrap());
             assert_eq!(slices as usize, slices_per_step(size));
             group.throughput(Throughput::Elements(slices * size as u64));
             group.bench_function(BenchmarkId::from_parameter(size), |bencher| {
-                one_thread.install(|| bencher.iter(|| optimizer.step(0.5, 1.0)));
+                one_thread.install(|| bencher.iter(|| optimizer.step(0.5, 1.0).unwrap()));
             });
-            let after = one_thread
-                .install(|| (0..8).map(|_| optimizer.step(0.5, 1.0).displacement).sum::<f64>() / 8.0);
+            let after = one_thread.install(|| {
+                (0..8).map(|_| optimizer.step(0.5, 1.0).unwrap().displacement).sum::<f64>() / 8.0
+            });
             assert!(after < before, "{size} samples in {dims} dimensions: displacement {before} to {after}");
             let table = optimizer.into_table();
             assert!(table.values().iter().all(|value| (0.0..1.0).contains(value)), "values left the cube");

@@ -33,7 +33,7 @@ fn step(criterion: &mut Criterion) {
         let mut optimizer = Optimizer::new(config).expect("the cases are valid");
         group.throughput(Throughput::Elements(selected::per_step(optimizer.objective()) as u64));
         group.bench_function(BenchmarkId::from_parameter(name), |bencher| {
-            bencher.iter(|| optimizer.step(0.1, 0.1));
+            bencher.iter(|| optimizer.step(0.1, 0.1).unwrap());
         });
         let table = optimizer.into_table();
         assert!(table.values().iter().all(|value| (0.0..1.0).contains(value)), "{name} left the unit cube");
@@ -55,9 +55,9 @@ fn sigma(criterion: &mut Criterion) {
         let mut optimizer = Optimizer::new(config).expect("the cases are valid");
         group.throughput(Throughput::Elements(selected::per_step(optimizer.objective()) as u64));
         group.bench_function(BenchmarkId::from_parameter(sigma_px), |bencher| {
-            bencher.iter(|| optimizer.step(0.1, 0.1));
+            bencher.iter(|| optimizer.step(0.1, 0.1).unwrap());
         });
-        let displacement = optimizer.step(0.1, 0.1).displacement;
+        let displacement = optimizer.step(0.1, 0.1).unwrap().displacement;
         assert!(displacement.is_finite() && displacement > 0.0);
     }
     group.finish();

@@ -29,7 +29,7 @@ fn threads(criterion: &mut Criterion) {
             let mut optimizer = Optimizer::new(config.clone()).expect("the cases are valid");
             group.throughput(Throughput::Elements(selected::per_step(optimizer.objective()) as u64));
             group.bench_function(BenchmarkId::from_parameter(threads), |bencher| {
-                pool.install(|| bencher.iter(|| optimizer.step(0.1, 0.1)));
+                pool.install(|| bencher.iter(|| optimizer.step(0.1, 0.1).unwrap()));
             });
         }
         group.finish();
@@ -39,7 +39,7 @@ fn threads(criterion: &mut Criterion) {
 fn after_some_steps(pool: &ThreadPool, config: &Config) -> SampleTable {
     pool.install(|| {
         let mut optimizer = Optimizer::new(config.clone()).expect("the cases are valid");
-        (0..48).for_each(|_| _ = optimizer.step(0.5, 1.0));
+        (0..48).for_each(|_| _ = optimizer.step(0.5, 1.0).unwrap());
         optimizer.into_table()
     })
 }

@@ -13,7 +13,7 @@ fn allocations(extent: Extent) -> u64 {
     let mut optimizer = Optimizer::new(Config::new(extent, 2)).unwrap();
     let mut work = || {
         (0..64).for_each(|_| {
-            _ = optimizer.step(0.1, 1.0);
+            _ = optimizer.step(0.1, 1.0).unwrap();
         });
         (0..4).for_each(|_| _ = optimizer.sweep(0.1, 1.0).unwrap());
     };

@@ -64,7 +64,7 @@ fn threads_do_not_change_a_bit_of_large_subsets() {
         let run = |threads| {
             with_threads(threads, || {
                 let mut optimizer = optimizer(&config);
-                let SliceStep { displacement, slices, .. } = optimizer.step(1.0, 1.0);
+                let SliceStep { displacement, slices, .. } = optimizer.step(1.0, 1.0).unwrap();
                 if config.extent.frames > 1 {
                     optimizer.sweep(1.0, 1.0).unwrap();
                 }
@@ -148,7 +148,7 @@ fn seeds_differ() {
     let from_start = |seed| {
         let config = config([1, 16, 16, 1], 2, Descent::barycentric(), seed);
         let mut optimizer = Optimizer::from_table(config, start.clone()).unwrap();
-        optimizer.step(1.0, 1.0);
+        optimizer.step(1.0, 1.0).unwrap();
         bits(&optimizer.into_table())
     };
     assert_ne!(from_start(7), from_start(8));
@@ -191,11 +191,11 @@ fn halves_of_steps_make_the_whole() {
         let config = config([2, 12, 12, 1], 2, descent, 11);
         let (mut whole, mut halves) = (optimizer(&config), optimizer(&config));
         for _ in 0..20 {
-            whole.step(0.1, 1.0);
+            whole.step(0.1, 1.0).unwrap();
         }
         for _ in 0..2 {
             for _ in 0..10 {
-                halves.step(0.1, 1.0);
+                halves.step(0.1, 1.0).unwrap();
             }
             let _ = halves.table();
         }
@@ -239,7 +239,10 @@ fn a_stopped_run_keeps_what_was_reached() {
         let mut slices = 0;
         for step in 0..17 {
             let progress = step as f64 / planned as f64;
-            slices += replayed.step(config.descent.rate().at(progress), config.balance.at(progress)).slices;
+            slices += replayed
+                .step(config.descent.rate().at(progress), config.balance.at(progress))
+                .unwrap()
+                .slices;
         }
         assert_eq!(bits(&stopped.table()), bits(&replayed.table()));
         assert_eq!(slices, report.slices);
@@ -253,7 +256,7 @@ fn steps_of_size_zero_leave_the_table() {
     let mut optimizer = optimizer(&config);
     let before = bits(&optimizer.table());
     for _ in 0..5 {
-        optimizer.step(0.0, 0.0);
+        optimizer.step(0.0, 0.0).unwrap();
         optimizer.sweep(0.0, 0.0).unwrap();
     }
     assert_eq!(bits(&optimizer.table()), before);
@@ -274,8 +277,8 @@ fn values_are_pinned() {
         let sum: f64 = table.values().iter().map(|&value| f64::from(value)).sum();
         (table.values()[..4].to_vec(), sum / table.values().len() as f64)
     };
-    let steps = |optimizer: &mut Optimizer| (0..4).for_each(|_| _ = optimizer.step(0.05, 0.05));
-    let balanced = |optimizer: &mut Optimizer| (0..16).for_each(|_| _ = optimizer.step(0.01, 1.0));
+    let steps = |optimizer: &mut Optimizer| (0..4).for_each(|_| _ = optimizer.step(0.05, 0.05).unwrap());
+    let balanced = |optimizer: &mut Optimizer| (0..16).for_each(|_| _ = optimizer.step(0.01, 1.0).unwrap());
     let swept = |optimizer: &mut Optimizer| (0..2).for_each(|_| _ = optimizer.sweep(0.1, 0.5).unwrap());
     let barycentric = Descent::barycentric();
     for ((first, mean), (expected, expected_mean)) in [

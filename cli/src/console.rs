@@ -72,6 +72,11 @@ impl Console {
     }
 }
 
+/// So many points, in words.
+pub fn points(count: usize) -> String {
+    if count == 1 { "1 point".into() } else { format!("{count} points") }
+}
+
 /// Says on standard error what went wrong. Not by `eprintln`, which panics where nobody can listen.
 pub fn complain(error: &dyn Error) {
     let _ = writeln!(io::stderr(), "error: {error}");

@@ -41,7 +41,7 @@ pub trait ClassFamily: std::fmt::Debug + Send + Sync {
     /// Name for messages and for a serialised [`crate::Config`].
     fn name(&self) -> &str;
 
-    /// Number of classes, for tables of this extent.
+    /// Number of classes, for tables of this extent; at most 2^24.
     fn members(&self, extent: &Extent) -> usize;
 
     /// The filter of class `member`, below [`ClassFamily::members`].
@@ -62,7 +62,7 @@ pub struct ClassSamples {
     /// Samples and their weights, in any order; each sample once at most, weights from 0 to 1. Sample `s` of
     /// a site has the number `extent.site_index(site) * extent.spp + s`.
     pub samples: Vec<(u32, f64)>,
-    /// Weight of the class beside the others of the family; positive.
+    /// Weight of the class beside the others of the family; from 1e-12 to 1e6.
     pub weight: f64,
 }
 

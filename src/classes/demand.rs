@@ -71,7 +71,7 @@ impl Demand {
 
     /// Dimensions a table must have: one more than the largest named.
     pub fn dims(&self) -> usize {
-        self.groups.iter().flatten().max().map_or(0, |largest| largest + 1)
+        self.groups.iter().flatten().max().map_or(0, |largest| largest.saturating_add(1))
     }
 
     /// Whether the site is demanded; it must lie inside the shape.

@@ -21,7 +21,7 @@ use crate::table::extent::Extent;
 pub struct LabelSet {
     /// The labels whose samples it holds.
     pub labels: Vec<u32>,
-    /// Weight of the pull on its samples beside that of the other classes; positive.
+    /// Weight of the pull on its samples beside that of the other classes; from 1e-12 to 1e6.
     pub weight: f64,
 }
 
@@ -56,8 +56,11 @@ pub(crate) struct Listed {
     emphases: Vec<f64>,
 }
 
+/// Classes that a caller may list.
+const MOST_CLASSES: usize = 1 << 24;
+
 pub(super) fn check_weight(name: &'static str, value: f64) -> Result<(), ClassError> {
-    Ok(RangeError::check(value > 0.0 && value <= 1e6, name, value, "above 0, at most 1e6")?)
+    Ok(RangeError::check((1e-12..=1e6).contains(&value), name, value, "from 1e-12 to 1e6")?)
 }
 
 impl Listed {
@@ -109,8 +112,11 @@ impl Listed {
     ) -> Result<Self, ClassError> {
         let family = classes.get();
         let mut listed = Self::default();
+        let members = family.members(&extent);
+        let (name, most) = ("the number of the caller's classes", "of at most 16777216");
+        RangeError::check(members <= MOST_CLASSES, name, members as f64, most)?;
         let mut seen = vec![usize::MAX; extent.samples()];
-        for index in 0..family.members(&extent) {
+        for index in 0..members {
             let mut member = family.member(&extent, index);
             check_weight("the weight of a class", member.weight)?;
             for &(sample, weight) in &member.samples {

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::demand::Wanted;
 use super::family::Filters;
-use crate::error::ClassError;
-use crate::table::extent::Extent;
+use crate::error::{ClassError, RangeError};
+use crate::table::extent::{Extent, MOST_VALUES};
 
 /// What is cut short by a prefix.
 ///
@@ -64,7 +64,7 @@ pub enum PrefixLengths {
 pub struct PrefixLength {
     /// Samples, from 1 to all.
     pub length: usize,
-    /// Weight of the pull on its samples beside that of the other prefixes; positive.
+    /// Weight of the pull on its samples beside that of the other prefixes; from 1e-12 to 1e6.
     pub weight: f64,
 }
 
@@ -113,6 +113,9 @@ impl Prefixes {
             super::listed::check_weight("the weight of a prefix", weight)?;
         }
         let (spp, blocks) = (extent.spp, extent.samples() / block);
+        let all = blocks.saturating_mul(lengths.len());
+        let (name, most) = ("the number of prefixes of all pixels", "of at most 2147483647");
+        RangeError::check(all <= MOST_VALUES, name, all as f64, most)?;
         let mut prefixes = Self { block, blocks, spp, lengths, wanted, mean_size: 0.0, mean_mass: 0.0 };
         (prefixes.mean_size, prefixes.mean_mass) = prefixes.means();
         Ok(prefixes)

@@ -33,23 +33,23 @@ pub enum Descent {
     Sgd {
         /// Step size.
         rate: Schedule,
-        /// Share of the velocity that is kept, in `[0, 1)`.
+        /// Share of the velocity that is kept, from 0 to 0.999999.
         momentum: f64,
     },
     /// Adam (Kingma and Ba 2015, Algorithm 1), with bias correction.
     Adam {
         /// Step size: roughly the distance that a coordinate moves per step.
         rate: Schedule,
-        /// Decay of the first moment, in `[0, 1)`.
+        /// Decay of the first moment, from 0 to 0.999999.
         beta1: f64,
-        /// Decay of the second moment, in `[0, 1)`.
+        /// Decay of the second moment, from 0 to 0.999999.
         beta2: f64,
         /// Added to the root of the second moment; in `[1e-30, 1e6]`.
         epsilon: f64,
     },
 }
 
-/// A positive number, at most 1e6, that changes over a run.
+/// A number from 1e-30 to 1e6 that changes over a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "shape", rename_all = "snake_case")]
 #[non_exhaustive]
@@ -74,6 +74,17 @@ pub enum Schedule {
         /// Value that the last step approaches.
         last: f64,
     },
+}
+
+/// Least and largest value of a schedule: their ratios stay finite.
+const LEAST: f64 = 1e-30;
+const MOST: f64 = 1e6;
+
+/// Refuses a step that is none: see [`crate::Optimizer::step`].
+pub(crate) fn check_step(rate: f64, balance: f64) -> Result<(), RangeError> {
+    let check = |name, value| RangeError::check((0.0..=MOST).contains(&value), name, value, "from 0 to 1e6");
+    check("the step size", rate)?;
+    check("the share of a balance", balance)
 }
 
 impl Schedule {
@@ -112,20 +123,21 @@ impl Schedule {
 
     pub(crate) fn validate(&self) -> Result<(), RangeError> {
         for (name, value) in ["the first step size", "the last step size"].into_iter().zip(self.ends()) {
-            RangeError::check(value > 0.0 && value <= 1e6, name, value, "above 0, at most 1e6")?;
+            RangeError::check((LEAST..=MOST).contains(&value), name, value, "from 1e-30 to 1e6")?;
         }
         Ok(())
     }
 
-    /// Value after the share `progress` of the run; clamped to `[0, 1]`.
+    /// Value after the share `progress` of the run; clamped to `[0, 1]`, and 0 if it is not a number.
     ///
     /// ```
     /// use fsot::config::Schedule;
     ///
     /// assert!((Schedule::geometric(1.0, 0.01).at(0.5) - 0.1).abs() < 1e-12);
     /// ```
+    #[allow(clippy::manual_clamp)] // `clamp` would let NaN through
     pub fn at(&self, progress: f64) -> f64 {
-        let progress = progress.clamp(0.0, 1.0);
+        let progress = progress.max(0.0).min(1.0);
         match *self {
             Self::Constant { value } => value,
             Self::Geometric { first, last } => first * (last / first).powf(progress),
@@ -135,6 +147,9 @@ impl Schedule {
         }
     }
 }
+
+/// Largest share of a moment that is kept from step to step.
+const MOST_DECAY: f64 = 0.999_999;
 
 impl Descent {
     /// Barycentric steps from 2 to 0.03: the default. Overshooting at first gets further than the natural
@@ -161,7 +176,10 @@ impl Descent {
     }
 
     pub(crate) fn validate(&self) -> Result<(), RangeError> {
-        let share = |name, value| RangeError::check((0.0..1.0).contains(&value), name, value, "in [0, 1)");
+        // Closer to 1, a decay would be 1 in `f32`.
+        let share = |name, value: f64| {
+            RangeError::check((0.0..=MOST_DECAY).contains(&value), name, value, "from 0 to 0.999999")
+        };
         self.rate().validate()?;
         match *self {
             Descent::Barycentric { .. } => Ok(()),

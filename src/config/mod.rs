@@ -23,13 +23,14 @@ mod until;
 
 use serde::{Deserialize, Serialize};
 
+pub(crate) use self::descent::check_step;
 pub use self::descent::{Descent, Schedule};
 pub use self::point_sets::LabelSubsets;
 pub use self::sweeps::Sweeps;
 pub use self::term::{DimensionGroup, Role, Slicing, Term};
 pub use self::until::{EndReason, Until, Work};
 use crate::classes::{Classes, FilterForm};
-pub use crate::error::{ExtentError, GroupError, RangeError, TermError};
+pub use crate::error::{ExtentError, GroupError, RangeError, Short, TermError};
 use crate::kernel::{Kernel, TemporalKernel};
 pub use crate::table::domain::{BELOW_ONE, Domain};
 use crate::table::extent::Extent;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::classes::{Classes, LabelSet, PrefixLengths, PrefixOf};
 use crate::config::{Config, Descent, Role, Schedule, Term};
-use crate::table::extent::{Extent, MOST_VALUES};
+use crate::table::extent::{Extent, MOST_DIMS, MOST_VALUES};
 #[cfg(feature = "image")]
 use crate::targets::Inks;
 use crate::targets::{Density, Target};
@@ -96,8 +96,9 @@ impl Config {
     /// [`Inks::counts`] says how many points each ink has.
     #[cfg(feature = "image")]
     pub fn color_stippling(count: usize, picture: &Inks) -> Self {
-        let counts = picture.counts(count);
-        let labels = labels(&counts);
+        // More points than a table holds are refused when the configuration is used, and not listed here.
+        let counts = picture.counts(count.min(MOST_VALUES));
+        let labels = if count <= MOST_VALUES { labels(&counts) } else { [].into() };
         let mut terms = Vec::new();
         for set in LabelSubsets::Every.list(counts.len()) {
             let size: usize = set.iter().map(|&ink| counts[ink as usize]).sum();
@@ -121,7 +122,7 @@ impl Config {
         let classes = Classes::Prefixes { of: PrefixOf::Table, lengths };
         let mut terms = vec![whole(classes.clone(), Target::UniformCube, dims)];
         if dims > 1 {
-            terms.extend((0..dims).map(|dim| Term {
+            terms.extend((0..dims.min(MOST_DIMS)).map(|dim| Term {
                 dims: vec![dim],
                 weight: MARGINAL,
                 ..whole(classes.clone(), Target::UniformCube, dims)
@@ -147,5 +148,7 @@ pub(crate) fn weight_of(size: f64) -> f64 {
 
 /// A term over all dimensions.
 pub(crate) fn whole(classes: Classes, target: Target, dims: usize) -> Term {
-    Term { classes, target, dims: (0..dims).collect(), weight: 1.0, role: Role::Descend }
+    // More dimensions are refused when the configuration is used, and not listed here.
+    let dims = (0..dims.min(MOST_DIMS)).collect();
+    Term { classes, target, dims, weight: 1.0, role: Role::Descend }
 }

@@ -36,8 +36,8 @@ pub struct Sweeps {
     /// Pairs held together less than this share of the strongest are left out; in `[0, 1)`.
     pub truncation: f64,
     /// While a run goes along `rate`, distances up to this times the step size, in units of `r`, count as
-    /// longer than they are: samples pass each other early in a run, and feel every neighbour at its end. At
-    /// least 0, finite; 0 is the exact gradient all along.
+    /// longer than they are: samples pass each other early in a run, and feel every neighbour at its end.
+    /// From 0 to 1e6; 0 is the exact gradient all along.
     #[serde(default)]
     pub softening: f64,
 }
@@ -65,8 +65,8 @@ impl Sweeps {
         self.rate.validate()?;
         self.polish.validate()?;
         let softening = self.softening;
-        let is_good = softening >= 0.0 && softening.is_finite();
-        RangeError::check(is_good, "the softening of sweeps", softening, "at least 0 and finite")?;
+        let is_good = (0.0..=1e6).contains(&softening);
+        RangeError::check(is_good, "the softening of sweeps", softening, "from 0 to 1e6")?;
         let truncation = self.truncation;
         let is_good = (0.0..1.0).contains(&truncation);
         RangeError::check(is_good, "the truncation of sweeps", truncation, "in [0, 1)")

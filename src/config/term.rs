@@ -9,9 +9,6 @@ use crate::simd::LANES;
 use crate::table::extent::{Extent, MOST_DIMS};
 use crate::targets::Target;
 
-/// Most slices of a step.
-const MOST_SLICES: usize = i32::MAX as usize;
-
 /// One part of the objective: a family of classes, what their samples should resemble, and in which
 /// dimensions.
 ///
@@ -35,7 +32,8 @@ pub struct Term {
     pub dims: Vec<usize>,
     /// Share of the work: the number of slices that touch a sample is proportional to it, in the mean. Where
     /// no term has classes per pixel, as in a point set, every class has its slices in each step, and their
-    /// pull on a sample is proportional to it instead. Positive.
+    /// pull on a sample is proportional to it instead. From 1e-15 to 1e15; a run that is counted in slices
+    /// asks for terms that are nearer to each other (see [`crate::ConfigError::Uneven`]).
     pub weight: f64,
     /// How its slices move the samples.
     pub role: Role,
@@ -165,9 +163,10 @@ impl Term {
         extent: &Extent,
     ) -> Vec<Self> {
         let mut terms: Vec<Self> = Vec::new();
-        for (kernel, companion, share) in kernels.iter().flat_map(smaller) {
-            let [own, of_companion] = [kernel, &companion].map(|kernel| concentration(kernel, extent));
-            let (Some(own), Some(of_companion)) = (own, of_companion) else { continue };
+        let all = kernels.iter().filter_map(|kernel| Some((kernel, concentration(kernel, extent)?)));
+        let all = all.flat_map(|(kernel, own)| smaller(kernel).map(move |smaller| (own, smaller)));
+        for (own, (companion, share)) in all {
+            let Some(of_companion) = concentration(&companion, extent) else { continue };
             if of_companion <= own || of_companion == 1.0 && extent.spp == 1 {
                 continue;
             }
@@ -200,7 +199,7 @@ impl Term {
 }
 
 /// A kernel's companions, and what they pull on a sample from its own place as share of what the kernel does.
-fn smaller(kernel: &Kernel) -> impl Iterator<Item = (&Kernel, Kernel, f64)> {
+fn smaller(kernel: &Kernel) -> impl Iterator<Item = (Kernel, f64)> {
     let [near, pixel] = [SpatialKernel::Gaussian { sigma_px: 1.0 }, SpatialKernel::Box { size_px: 1 }];
     let in_space = [(kernel.spatial.clone(), 1.0), (near, NEAR), (pixel, PIXEL)];
     let mut in_time = vec![(kernel.temporal.clone(), 1.0)];
@@ -209,7 +208,7 @@ fn smaller(kernel: &Kernel) -> impl Iterator<Item = (&Kernel, Kernel, f64)> {
     }
     in_space.into_iter().flat_map(move |(spatial, share)| {
         let with = move |(temporal, of_time): (TemporalKernel, f64)| {
-            (kernel, Kernel { spatial: spatial.clone(), temporal, ..kernel.clone() }, share * of_time)
+            (Kernel { spatial: spatial.clone(), temporal, ..kernel.clone() }, share * of_time)
         };
         in_time.clone().into_iter().map(with)
     })
@@ -247,6 +246,10 @@ pub struct Slicing {
     pub axis_share: f64,
     /// Slices per step. `None`: a sixteenth of an epoch, where an epoch visits every pixel of every frame
     /// once; in a point set `directions` slices of every class (of 16 classes of a term that has more).
+    ///
+    /// At most 2^22, or 16 per pixel and frame if that is more; and as many as hold 2^26 samples together
+    /// in the mean, or 64 times those of the table. Where a sixteenth of an epoch would be more, as under
+    /// filters as wide as a large table, it is that many.
     pub batch_slices: Option<usize>,
 }
 
@@ -267,8 +270,8 @@ impl Slicing {
         let is_good = (1..=LANES).contains(&directions);
         RangeError::check(is_good, "directions per subset", directions as f64, "from 1 to 16")?;
         RangeError::check((0.0..=1.0).contains(&axis_share), "the axis share", axis_share, "in [0, 1]")?;
-        let slices = batch_slices.unwrap_or(1);
-        let is_good = (1..=MOST_SLICES).contains(&slices);
-        RangeError::check(is_good, "the batch size", slices as f64, "from 1 to 2147483647 slices")
+        // How many are too many depends on what they hold.
+        let is_good = batch_slices != Some(0);
+        RangeError::check(is_good, "the batch size", 0.0, "of at least 1 slice")
     }
 }

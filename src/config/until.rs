@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// When a run ends.
+/// When a run ends. Numbers of slices and of sweeps are 1e9 at most.
 ///
 /// ```
 /// use fsot::config::Work;
@@ -35,8 +35,9 @@ pub enum Until {
     Work(Work),
     /// After about this many seconds, with what gets furthest by then: sweeps where the objective has its
     /// closed form, after a fifth of the time for the frame that an animation begins with; slices elsewhere.
-    /// A brief calibration fixes how much work fits, schedules follow it, and
-    /// [`RunReport::work`](crate::RunReport::work) makes the very same table again, anywhere.
+    /// A brief calibration, which is a part of that time, fixes how much work fits; schedules follow it, and
+    /// [`RunReport::work`](crate::RunReport::work) makes the very same table again, anywhere. Times in which
+    /// nothing can be done are refused ([`ConfigError::TooShort`](crate::ConfigError::TooShort)).
     Seconds(f64),
     /// As soon as the mean squared displacement falls by less than the share `improvement` from one window to
     /// the next, and at the latest after `at_most` slices per pixel and frame, the number that schedules

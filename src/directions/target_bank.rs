@@ -78,12 +78,8 @@ impl TargetBank {
         }
         let mut laws = Vec::with_capacity(exact.len());
         for directions in exact.chunks(AT_ONCE) {
-            let of = |direction: &Vec<f64>| {
-                let law = target.project(direction);
-                let problem = TargetError::BadLaw { direction: direction.clone() };
-                if law.is_sound() { Ok(law.into_pieces()) } else { Err(problem) }
-            };
-            laws.extend(directions.par_iter().map(of).collect::<Result<Vec<_>, _>>()?);
+            let of = |direction: &Vec<f64>| Ok(target.project(direction).sound(direction)?.into_pieces());
+            laws.extend(directions.par_iter().map(of).collect::<Result<Vec<_>, TargetError>>()?);
             watch.tell(laws.len() as f64 / exact.len() as f64)?;
         }
         Ok(vec![Self { theta, dims, laws }])

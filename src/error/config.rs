@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::{ExtentError, GroupError, KernelError, RangeError, TargetError};
+use super::{ExtentError, GroupError, KernelError, RangeError, Short, TargetError};
 
 /// A configuration that cannot be optimised.
 ///
@@ -13,7 +13,7 @@ use super::{ExtentError, GroupError, KernelError, RangeError, TargetError};
 /// config.terms[0].weight = -1.0;
 /// let error = Objective::new(&config).unwrap_err();
 /// assert!(matches!(error, ConfigError::Term { term: 0, .. }));
-/// assert_eq!(error.to_string(), "term 0: the weight of a term is -1: give a value above 0 and finite");
+/// assert_eq!(error.to_string(), "term 0: the weight of a term is -1: give a value from 1e-15 to 1e15");
 /// ```
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -62,6 +62,36 @@ pub enum ConfigError {
     /// A demand that no term of the objective serves.
     #[error("nothing is demanded: demand at least one pixel and a dimension that a term sees")]
     NoDemand,
+    /// More slices in a step than anybody waits for.
+    #[error("a step of {slices} slices would take too long: give a batch of at most {most}")]
+    Batch {
+        /// Slices asked for.
+        slices: usize,
+        /// Most slices of a step.
+        most: usize,
+    },
+    /// A run would be counted by terms that do next to nothing of its work, and hardly ever end.
+    #[error(
+        "the terms by which slices are counted do {} of the work, less than 1e-3: \
+         bring the weights of the terms nearer to each other",
+        Short::from(share)
+    )]
+    Uneven {
+        /// Their share of the slices, or of the samples that these hold.
+        share: f64,
+    },
+    /// A time in which nothing can be done.
+    #[error(
+        "{} s are too short, since the least that can be done takes about {} s: ask for at least that",
+        Short::from(seconds),
+        Short::from(least)
+    )]
+    TooShort {
+        /// Seconds asked for.
+        seconds: f64,
+        /// Seconds that one step or sweep takes, rounded up to two digits.
+        least: f64,
+    },
     /// Sweeps were asked for, but a term has no closed form over all slices.
     #[error("term {term} cannot be swept, since {why}: use slices")]
     NotInClosedForm {
@@ -166,7 +196,7 @@ pub enum ClassError {
         most: usize,
     },
     /// A class of the caller's own cannot serve as one.
-    #[error("class {member} of \"{name}\" gives sample {sample} weight {weight}: {problem}")]
+    #[error("class {member} of \"{name}\" gives sample {sample} weight {}: {problem}", Short::from(weight))]
     Custom {
         /// Name of the family.
         name: Box<str>,

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use super::{ExtentError, ImportError};
+use super::{ExtentError, ImportError, Short};
 
 /// A table that cannot be made, read or written.
 ///
@@ -30,9 +30,9 @@ pub enum TableError {
     },
     /// A value lies outside `[0, 1)` or is not finite.
     #[error(
-        "the value at [frame {}, y {}, x {}, sample {}, dim {}] is {value}: \
+        "the value at [frame {}, y {}, x {}, sample {}, dim {}] is {}: \
          values must lie in [0, 1)",
-        at[0], at[1], at[2], at[3], at[4]
+        at[0], at[1], at[2], at[3], at[4], Short::from(value)
     )]
     Value {
         /// `[frame, y, x, sample, dim]`.
@@ -181,8 +181,8 @@ pub enum FormatError {
     },
     /// A value lies outside `[0, 1)` or is not finite.
     #[error(
-        "the value at [frame {}, y {}, x {}, sample {}, dim {}] is {value} instead of in [0, 1): {advice}",
-        at[0], at[1], at[2], at[3], at[4]
+        "the value at [frame {}, y {}, x {}, sample {}, dim {}] is {} instead of in [0, 1): {advice}",
+        at[0], at[1], at[2], at[3], at[4], Short::from(value)
     )]
     Value {
         /// `[frame, y, x, sample, dim]`.

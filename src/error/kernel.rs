@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::{ExtentError, RangeError};
+use super::{ExtentError, RangeError, Short};
 
 /// A kernel that cannot filter.
 ///
@@ -22,7 +22,10 @@ pub enum KernelError {
     #[error(transparent)]
     Extent(#[from] ExtentError),
     /// A weight that is none.
-    #[error("{kernel} has weight {weight} at tap {index}: weights must be finite and at least 0")]
+    #[error(
+        "{kernel} has weight {} at tap {index}: weights must be finite and at least 0",
+        Short::from(weight)
+    )]
     BadTap {
         /// Which kernel.
         kernel: &'static str,

@@ -9,6 +9,7 @@ mod objective;
 #[cfg(feature = "image")]
 mod picture;
 mod shape;
+mod short;
 mod target;
 
 pub use self::config::{ClassError, ConfigError, TermError};
@@ -19,4 +20,6 @@ pub use self::objective::{ObjectiveError, SliceError};
 #[cfg(feature = "image")]
 pub use self::picture::PictureError;
 pub use self::shape::{ExtentError, GroupError, RangeError};
+pub use self::short::Short;
+pub(crate) use self::short::ShortList;
 pub use self::target::TargetError;

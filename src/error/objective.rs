@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::ConfigError;
+use super::{ConfigError, Short, TargetError};
 
 /// A question that an objective cannot answer.
 ///
@@ -32,7 +32,7 @@ pub enum ObjectiveError {
         expected: usize,
     },
     /// A point lies outside the unit cube.
-    #[error("point coordinate {index} is {value}: give finite values in [0, 1)")]
+    #[error("point coordinate {index} is {}: give finite values in [0, 1)", Short::from(value))]
     BadPoint {
         /// Index into the list of coordinates.
         index: usize,
@@ -73,8 +73,11 @@ pub enum SliceError {
         /// Components expected.
         expected: usize,
     },
+    /// The target has no law along it.
+    #[error(transparent)]
+    Target(#[from] TargetError),
     /// A number that cannot be used.
-    #[error("{what} is {value}: give {expected}")]
+    #[error("{what} is {}: give {expected}", Short::from(value))]
     Value {
         /// Which field.
         what: &'static str,

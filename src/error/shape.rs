@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use super::Short;
+
 /// A number that lies outside its range.
 ///
 /// ```
@@ -11,7 +13,7 @@ use thiserror::Error;
 /// assert_eq!(error.to_string(), "alpha is 2: give a value from 0 to 1");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[error("{name} is {value}: give a value {expected}")]
+#[error("{name} is {}: give a value {expected}", Short::from(.value))]
 #[non_exhaustive]
 pub struct RangeError {
     /// Name of the parameter.
@@ -60,6 +62,14 @@ pub enum ExtentError {
     TooLarge {
         /// Number of values asked for (saturating).
         values: u64,
+    },
+    /// More than memory holds.
+    #[error("{what} takes {bytes} bytes, which there are not: give a smaller extent, or fewer dimensions")]
+    NoMemory {
+        /// What takes them.
+        what: &'static str,
+        /// How many.
+        bytes: usize,
     },
     /// More dimensions than a sample can have.
     #[error("dims is {dims}: give a value of at most {most}")]

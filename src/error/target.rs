@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::RangeError;
+use super::{RangeError, Short, ShortList};
 
 /// A measure that cannot be a target.
 ///
@@ -37,7 +37,10 @@ pub enum TargetError {
         expected: usize,
     },
     /// A value cannot be a density.
-    #[error("the density at column {x}, row {y} is {value}: give finite values of at least 0")]
+    #[error(
+        "the density at column {x}, row {y} is {}: give finite values of at least 0",
+        Short::from(&(*value as f32))
+    )]
     BadDensity {
         /// Column.
         x: usize,
@@ -80,7 +83,7 @@ pub enum TargetError {
         dims: usize,
     },
     /// A point of a cloud lies outside the unit cube.
-    #[error("coordinate {index} of the cloud is {value}: give finite values in [0, 1]")]
+    #[error("coordinate {index} of the cloud is {}: give finite values in [0, 1]", Short::from(value))]
     BadCoordinate {
         /// Position in the list of coordinates.
         index: usize,
@@ -88,9 +91,23 @@ pub enum TargetError {
         value: f64,
     },
     /// The law along a direction is not a law.
-    #[error("the target has no finite law along {direction:?}: correct its projection")]
+    #[error("the target has no finite law along {}: correct its projection", ShortList(direction))]
     BadLaw {
         /// The direction.
         direction: Vec<f64>,
+    },
+    /// The law along a direction is not that of a measure on the unit cube.
+    #[error(
+        "along {} the target reaches from {} to {}, but the unit cube from {} to {}: correct its projection",
+        ShortList(direction), Short::from(reach[0]), Short::from(reach[1]), Short::from(cube[0]),
+        Short::from(cube[1])
+    )]
+    OutsideCube {
+        /// The direction.
+        direction: Vec<f64>,
+        /// Least and largest value of the law.
+        reach: [f64; 2],
+        /// The same of the cube.
+        cube: [f64; 2],
     },
 }

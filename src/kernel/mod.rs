@@ -7,6 +7,7 @@
 //! only their ratios matter.
 
 mod autocorrelation;
+pub(crate) mod fft;
 mod spatial;
 mod taps;
 mod temporal;
@@ -16,7 +17,7 @@ use serde::{Deserialize, Serialize};
 pub use self::autocorrelation::autocorrelation;
 pub use self::spatial::{SpatialKernel, SpatialTap};
 pub use self::taps::Tap;
-use self::taps::{NEGLIGIBLE, drop_below, maximum, range};
+use self::taps::{NEGLIGIBLE, drop_below, maximum, range, to_unit};
 pub use self::temporal::TemporalKernel;
 pub use crate::error::KernelError;
 use crate::table::extent::Extent;
@@ -96,6 +97,9 @@ impl Kernel {
         let truncation = self.truncation.max(NEGLIGIBLE);
         let mut temporal = self.temporal.folded(extent.frames)?;
         let mut spatial = self.spatial.folded(extent)?;
+        // Products of large or small weights would leave the range of numbers.
+        to_unit(&mut temporal);
+        to_unit(&mut spatial);
         drop_below(&mut temporal, truncation);
         drop_below(&mut spatial, truncation);
         let largest = maximum(&temporal) * maximum(&spatial);

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::taps::{NEGLIGIBLE, binomial, centred, check_taps, checked_size, drop_below, gaussian};
+use super::taps::{NEGLIGIBLE, binomial, centred, check_taps, checked_size, drop_below, fold, gaussian};
 use crate::error::KernelError;
 use crate::table::extent::Extent;
 
@@ -85,15 +85,16 @@ impl SpatialKernel {
         };
         // A Gaussian is given by its right half, the others by all their taps.
         let symmetric = matches!(self, SpatialKernel::Gaussian { .. });
+        let offsets = || {
+            let first = if symmetric { 0 } else { (axis.len() as i64 - 1) / 2 };
+            axis.iter().enumerate().flat_map(move |(tap, &weight)| {
+                let offset = tap as i64 - first;
+                let mirrored = (symmetric && tap > 0).then_some((-offset, weight));
+                std::iter::once((offset, weight)).chain(mirrored)
+            })
+        };
         let fold = |len: usize| {
-            let mut folded = BTreeMap::new();
-            for (tap, &weight) in axis.iter().enumerate() {
-                let offset = if symmetric { tap as i64 } else { tap as i64 - (axis.len() as i64 - 1) / 2 };
-                *folded.entry(centred(offset, len)).or_insert(0.0) += weight;
-                if symmetric && tap > 0 {
-                    *folded.entry(centred(-offset, len)).or_insert(0.0) += weight;
-                }
-            }
+            let mut folded = fold(offsets(), axis.len() >= len, len);
             drop_below(&mut folded, NEGLIGIBLE);
             folded
         };

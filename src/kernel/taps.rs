@@ -84,6 +84,23 @@ pub(super) fn centred(offset: i64, len: usize) -> i32 {
     (if 2 * wrapped > len { wrapped - len } else { wrapped }) as i32
 }
 
+/// Sums of the weights by offset on an axis that wraps; `covers` if each of them has some.
+pub(super) fn fold(
+    weights: impl Iterator<Item = (i64, f64)>,
+    covers: bool,
+    len: usize,
+) -> BTreeMap<i32, f64> {
+    if covers {
+        // As wide as the axis or far wider.
+        let mut sums = vec![0.0; len];
+        weights.for_each(|(offset, weight)| sums[offset.rem_euclid(len as i64) as usize] += weight);
+        return sums.into_iter().enumerate().map(|(at, sum)| (centred(at as i64, len), sum)).collect();
+    }
+    let mut folded = BTreeMap::new();
+    weights.for_each(|(offset, weight)| *folded.entry(centred(offset, len)).or_insert(0.0) += weight);
+    folded
+}
+
 pub(super) fn maximum<K>(weights: &BTreeMap<K, f64>) -> f64 {
     weights.values().copied().fold(0.0, f64::max)
 }
@@ -91,4 +108,10 @@ pub(super) fn maximum<K>(weights: &BTreeMap<K, f64>) -> f64 {
 pub(super) fn drop_below<K: Ord>(weights: &mut BTreeMap<K, f64>, share: f64) {
     let least = share * maximum(weights);
     weights.retain(|_, weight| *weight >= least);
+}
+
+/// Brings the largest weight into `[1/2, 1)`, by a power of two, so that no digit changes.
+pub(super) fn to_unit<K>(weights: &mut BTreeMap<K, f64>) {
+    let (_, exponent) = libm::frexp(maximum(weights));
+    weights.values_mut().for_each(|weight| *weight = libm::scalbn(*weight, -exponent));
 }

@@ -79,13 +79,28 @@ impl TemporalKernel {
 
     /// Weights of the offsets `dt ≤ 0` on an animation that wraps.
     pub(super) fn folded(&self, frames: usize) -> Result<BTreeMap<i32, f64>, KernelError> {
-        let mut folded = BTreeMap::new();
-        for (back, weight) in self.taps()?.into_iter().enumerate() {
-            *folded.entry(-((back % frames) as i32)).or_insert(0.0) += weight;
+        if let TemporalKernel::Ema { alpha } = *self
+            && (1e-6..SLOW).contains(&alpha)
+        {
+            // Millions of taps. Every time around the animation is the same again, up to a factor.
+            let taps = std::iter::successors(Some(1.0), |tap| Some(tap * (1.0 - alpha)));
+            let taps = taps.take(frames).take_while(|&tap| tap > NEGLIGIBLE);
+            return Ok(taps.enumerate().map(|(back, weight)| (-(back as i32), weight)).collect());
         }
-        Ok(folded)
+        let taps = self.taps()?;
+        if taps.len() < frames {
+            return Ok(taps.into_iter().enumerate().map(|(back, weight)| (-(back as i32), weight)).collect());
+        }
+        let mut sums = vec![0.0; frames];
+        for taps in taps.chunks(frames) {
+            sums.iter_mut().zip(taps).for_each(|(sum, weight)| *sum += weight);
+        }
+        Ok(sums.into_iter().enumerate().map(|(back, sum)| (-(back as i32), sum)).collect())
     }
 }
+
+/// Weight of the current frame below which a moving average has more than a quarter of a million taps.
+const SLOW: f64 = 1e-4;
 
 /// Taps of the perceptual kernel, current frame first (Korać et al. 2023, their 15 taps at 60 fps to 4e-16).
 fn perceptual(fps: f64) -> Result<Vec<f64>, KernelError> {
@@ -95,7 +110,8 @@ fn perceptual(fps: f64) -> Result<Vec<f64>, KernelError> {
         return Err(range("fps", fps, "above 0, at most 10000"));
     }
     let len = (SECONDS * fps).ceil() as usize;
-    if len == 1 {
+    // None, of the least positive numbers.
+    if len <= 1 {
         return Ok(vec![1.0]);
     }
     let spacing = SECONDS / (len - 1) as f64;

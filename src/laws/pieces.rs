@@ -107,7 +107,12 @@ impl Pieces {
     pub(crate) fn of_density(places: &[f64], densities: &[f64]) -> Self {
         let is_density = densities.iter().all(|&density| density >= 0.0 && density.is_finite());
         let mass = densities.iter().sum::<f64>();
-        if places.len() != densities.len() || !places.is_sorted() || !is_density || mass == 0.0 {
+        if places.len() != densities.len()
+            || !places.is_sorted()
+            || !is_density
+            || mass == 0.0
+            || mass.is_infinite()
+        {
             return Self::unsound();
         }
         let pairs = || places.windows(2).zip(densities.windows(2));
@@ -149,7 +154,8 @@ impl Pieces {
 
     /// The piece where the distribution function reaches `u`.
     fn piece(&self, u: f64) -> usize {
-        self.knots.partition_point(|knot| knot.below < u).clamp(1, (self.knots.len() - 1).max(1)) - 1
+        self.knots.partition_point(|knot| knot.below < u).clamp(1, self.knots.len().saturating_sub(1).max(1))
+            - 1
     }
 
     pub(crate) fn quantile(&self, u: f64) -> f64 {

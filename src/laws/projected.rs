@@ -2,6 +2,10 @@
 
 use super::cube::CubeLaw;
 use super::pieces::Pieces;
+use crate::error::TargetError;
+
+/// Share of the cube's projection by which a law may reach beyond it: rounding.
+const SLACK: f64 = 1e-3;
 
 /// The one-dimensional law of `mu·theta`: its distribution function, its quantile function `Q`, and means of
 /// `Q`.
@@ -88,6 +92,11 @@ impl Projected {
         Self::of_pieces(Pieces::of_density(places, densities))
     }
 
+    /// What stands for no law: all of it is NaN, and it is refused when it is used.
+    pub(crate) fn none() -> Self {
+        Self::from_samples(Vec::new())
+    }
+
     /// As pieces, for the optimiser.
     pub(crate) fn into_pieces(self) -> Pieces {
         match self.0 {
@@ -96,10 +105,23 @@ impl Projected {
         }
     }
 
-    /// Whether all of it is finite.
-    pub(crate) fn is_sound(&self) -> bool {
+    /// The law itself, if it can be that of a measure on the unit cube along this direction.
+    ///
+    /// # Errors
+    /// One that is not finite, or that reaches beyond the cube.
+    pub(crate) fn sound(self, direction: &[f64]) -> Result<Self, TargetError> {
         let (low, high) = self.support();
-        low.is_finite() && high.is_finite() && self.mean().is_finite() && self.variance().is_finite()
+        let all = [low, high, self.mean(), self.variance()];
+        if !all.iter().all(|value| value.is_finite()) {
+            return Err(TargetError::BadLaw { direction: direction.into() });
+        }
+        let end = |of: fn(f64, f64) -> f64| direction.iter().map(|&theta| of(theta, 0.0)).sum::<f64>();
+        let cube = [end(f64::min), end(f64::max)];
+        let slack = SLACK * (cube[1] - cube[0]);
+        if low < cube[0] - slack || high > cube[1] + slack {
+            return Err(TargetError::OutsideCube { direction: direction.into(), reach: [low, high], cube });
+        }
+        Ok(self)
     }
 
     /// The least and the greatest value: for the cube the sums of the negative and of the positive

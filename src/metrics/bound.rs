@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::error::MeasureError;
 use super::samples::{Samples, Values};
+use crate::error::{RangeError, TargetError};
 use crate::files::metadata::BoundEstimate;
 use crate::laws::distance::Workspace;
 use crate::objective::{Objective, Slice};
@@ -36,6 +37,8 @@ pub struct Bound {
 
 /// Most subsets that share a direction; the standard error is taken over directions.
 const CLUSTER: usize = 32;
+/// Most slices of an estimate: its error is a few millionths then.
+pub(super) const MOST_SLICES: usize = 1 << 24;
 /// Fewest directions.
 const DIRECTIONS: usize = 8;
 
@@ -49,7 +52,8 @@ impl Bound {
     /// count.
     ///
     /// # Errors
-    /// Samples whose shape is not that of the objective; `slices` of 0.
+    /// Samples whose shape is not that of the objective; `slices` of 0 or above 2^24; a target of the
+    /// caller's own that has no law along some direction.
     pub fn measure<'a>(
         samples: impl Into<Samples<'a>>,
         objective: &Objective,
@@ -60,18 +64,19 @@ impl Bound {
         if slices == 0 {
             return Err(MeasureError::Nothing { what: "slices" });
         }
+        let is_good = slices <= MOST_SLICES;
+        RangeError::check(is_good, "the number of slices", slices as f64, "of at most 16777216")?;
         let Extent { frames, height, width, spp } = objective.extent();
         let [given, expected] =
             [samples.shape(), [frames, height, width, spp, objective.dims()]].map(Box::new);
         if given != expected {
             return Err(MeasureError::OtherShape { given, expected });
         }
-        let terms: Vec<Moments> = (0..objective.terms().count())
-            .map(|term| match samples.values() {
-                Values::F32(points) => Moments::of_term(objective, points, seed, slices, term),
-                Values::F64(points) => Moments::of_term(objective, points, seed, slices, term),
-            })
-            .collect();
+        let terms = (0..objective.terms().count()).map(|term| match samples.values() {
+            Values::F32(points) => Moments::of_term(objective, points, seed, slices, term),
+            Values::F64(points) => Moments::of_term(objective, points, seed, slices, term),
+        });
+        let terms = terms.collect::<Result<Vec<Moments>, TargetError>>()?;
         let weights: Vec<f64> = objective.terms().map(|term| term.weight).collect();
         let total: f64 = weights.iter().sum();
         let mut mean = Moments::default();
@@ -99,7 +104,7 @@ impl Moments {
         seed: u64,
         slices: usize,
         term: usize,
-    ) -> Self {
+    ) -> Result<Self, TargetError> {
         let family = &objective.terms[term].family;
         // As many touches as the smallest family needs for its slices, in a large one too.
         let least = objective.terms.iter().map(|term| term.family.mean_size()).fold(f64::INFINITY, f64::min);
@@ -107,23 +112,23 @@ impl Moments {
         // LabelSubsets of a direction are different ones: a family of a few large classes has one each.
         let per_direction = if family.visits() < DIRECTIONS * CLUSTER { 1 } else { CLUSTER };
         let clusters = slices.div_ceil(per_direction).max(DIRECTIONS);
-        let pairs: Vec<(f64, f64)> = (0..clusters)
+        let pairs = (0..clusters)
             .into_par_iter()
-            .map(|cluster| distances(objective, points, seed, term, (cluster, clusters, per_direction)))
-            .collect();
+            .map(|cluster| distances(objective, points, seed, term, (cluster, clusters, per_direction)));
+        let pairs = pairs.collect::<Result<Vec<(f64, f64)>, _>>()?;
         let count = clusters as f64;
         let mean = |value: &dyn Fn(&(f64, f64)) -> f64| pairs.iter().map(value).sum::<f64>() / count;
         let (table, noise) = (mean(&|pair| pair.0), mean(&|pair| pair.1));
         let product = |value: &dyn Fn(f64, f64) -> f64| {
             mean(&|pair| value(pair.0 - table, pair.1 - noise)) / (count - 1.0)
         };
-        Self {
+        Ok(Self {
             table,
             noise,
             table_variance: product(&|a, _| a * a),
             noise_variance: product(&|_, b| b * b),
             covariance: product(&|a, b| a * b),
-        }
+        })
     }
 
     fn add(&mut self, other: &Self, weight: f64) {
@@ -156,7 +161,7 @@ fn distances<T: Copy + Into<f64>>(
     seed: u64,
     term: usize,
     (cluster, clusters, per_direction): (usize, usize, usize),
-) -> (f64, f64) {
+) -> Result<(f64, f64), TargetError> {
     let planned = &objective.terms[term];
     let dims = planned.spec.dims.len();
     let index = (term as u64) << 32 | cluster as u64;
@@ -173,7 +178,7 @@ fn distances<T: Copy + Into<f64>>(
     let scales = planned.spec.target.scales(dims);
     let direction: Vec<f64> =
         direction.iter().zip(scales).map(|(component, scale)| component * scale).collect();
-    let law = planned.spec.target.project(&direction);
+    let law = planned.spec.target.project(&direction).sound(&direction)?;
     let is_cube = planned.spec.target == Target::UniformCube;
     let cut: Vec<f64> = (0..dims).map(|_| generator.random()).collect();
     let mut strata: Vec<usize> = (0..per_direction).collect();
@@ -206,7 +211,7 @@ fn distances<T: Copy + Into<f64>>(
         of_noise += mass * workspace.w1(&law, &projections, weights);
     }
     let mass = per_direction as f64 * planned.family.mean_mass();
-    (of_table / mass, of_noise / mass)
+    Ok((of_table / mass, of_noise / mass))
 }
 
 #[cfg(test)]

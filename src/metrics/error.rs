@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-use crate::error::{ConfigError, GroupError, KernelError, RangeError, TargetError};
+use crate::error::{ConfigError, GroupError, KernelError, RangeError, Short, TargetError};
 
 /// A question that has no answer: samples, dimensions, integrands or settings that cannot be measured.
 ///
@@ -33,7 +33,10 @@ pub enum MeasureError {
         dims: usize,
     },
     /// A point lies outside the unit cube.
-    #[error("point {point} has {value} in dimension {dimension}: give finite values in [0, 1)")]
+    #[error(
+        "point {point} has {} in dimension {dimension}: give finite values in [0, 1)",
+        Short::from(value)
+    )]
     BadPoint {
         /// Number of the point.
         point: usize,

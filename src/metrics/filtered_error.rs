@@ -4,10 +4,10 @@ use rustfft::num_complex::Complex64;
 
 use super::coordinates::Coordinates;
 use super::error::MeasureError;
-use super::fft::Transform;
 use super::integrands::Integrands;
 use super::ratios::Ratios;
 use super::samples::Samples;
+use crate::kernel::fft::Transform;
 use crate::kernel::{Kernel, TemporalKernel};
 use crate::table::extent::Extent;
 

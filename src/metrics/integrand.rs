@@ -6,6 +6,10 @@ use std::sync::Arc;
 use super::error::MeasureError;
 use super::integrand_kind::IntegrandKind;
 use crate::error::RangeError;
+use crate::table::extent::MOST_DIMS;
+
+/// Points of an estimate: their values are kept, in a gibibyte.
+const MOST_POINTS: usize = 1 << 27;
 
 /// A function on `[0, 1)^D` whose mean and variance under the uniform distribution are known.
 ///
@@ -98,7 +102,8 @@ impl Integrand {
     /// dims).
     ///
     /// # Errors
-    /// No dimensions or points; values that are not finite, or all the same.
+    /// No dimensions or points; more than [`MOST_DIMS`] dimensions, or than 2^27 points; values that are not
+    /// finite, or all the same.
     pub fn estimated(
         dims: usize,
         value: impl Fn(&[f64]) -> f64 + Send + Sync + 'static,
@@ -109,6 +114,10 @@ impl Integrand {
                 return Err(MeasureError::Nothing { what });
             }
         }
+        let range =
+            |is_good, name, count: usize, expected| RangeError::check(is_good, name, count as f64, expected);
+        range(dims <= MOST_DIMS, "the number of dimensions", dims, "of at most 64")?;
+        range(points <= MOST_POINTS, "the number of points", points, "of at most 134217728")?;
         let primes = (2..).filter(|number| (2..*number).all(|divisor| number % divisor != 0));
         let bases: Vec<usize> = primes.take(dims).collect();
         let mut point = vec![0.0; dims];

@@ -5,6 +5,11 @@ use std::sync::Arc;
 use super::drawn::DrawnFamily;
 use super::error::MeasureError;
 use super::integrand::Integrand;
+use crate::error::RangeError;
+use crate::table::extent::MOST_DIMS;
+
+/// Integrands of a family that is drawn: a million leave an error of 3e-5 in the mean.
+const MOST_INTEGRANDS: usize = 1 << 20;
 
 /// Integrands under one name; results are means over each family, and over families.
 ///
@@ -97,13 +102,18 @@ impl Integrands {
     /// the mean.
     ///
     /// # Errors
-    /// `dims` or `per_family` is 0.
+    /// `dims` is 0 or above [`MOST_DIMS`]; `per_family` is 0 or above 2^20.
     pub fn random(dims: usize, per_family: usize, seed: u64) -> Result<Self, MeasureError> {
         for (what, count) in [("dimensions", dims), ("integrands per family", per_family)] {
             if count == 0 {
                 return Err(MeasureError::Nothing { what });
             }
         }
+        let range =
+            |is_good, name, count: usize, expected| RangeError::check(is_good, name, count as f64, expected);
+        range(dims <= MOST_DIMS, "the number of dimensions", dims, "of at most 64")?;
+        let name = "the number of integrands per family";
+        range(per_family <= MOST_INTEGRANDS, name, per_family, "of at most 1048576")?;
         let families = DrawnFamily::ALL.map(|family| Family {
             name: family.name().into(),
             integrands: (0..per_family).map(|index| family.integrand(seed, index, dims)).collect(),

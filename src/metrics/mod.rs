@@ -49,7 +49,6 @@ mod discrepancy;
 mod drawn;
 mod error;
 mod error_image;
-mod fft;
 mod filtered_error;
 mod histogram;
 mod integrand;

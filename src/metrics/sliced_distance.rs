@@ -2,11 +2,12 @@
 
 use rayon::prelude::*;
 
+use super::bound::MOST_SLICES;
 use super::coordinates::Coordinates;
 use super::error::MeasureError;
 use super::samples::Samples;
 use crate::directions::frames::spread;
-use crate::error::TargetError;
+use crate::error::{RangeError, TargetError};
 use crate::laws::distance::Workspace;
 use crate::targets::Target;
 
@@ -56,6 +57,8 @@ impl SlicedDistance {
         if directions == 0 {
             return Err(MeasureError::Nothing { what: "directions" });
         }
+        let is_good = directions <= MOST_SLICES;
+        RangeError::check(is_good, "the number of directions", directions as f64, "of at most 16777216")?;
         let scales = target.scales(dims.len());
         let scaled = |index| {
             let direction = spread(dims.len(), index, directions);
@@ -66,16 +69,14 @@ impl SlicedDistance {
         let mut squared: Vec<f64> = Vec::with_capacity(directions);
         for together in all.chunks(TOGETHER) {
             let laws = target.project_all(together);
-            let squares = together.par_iter().zip(&laws).map(|(direction, law)| {
-                if !law.is_sound() {
-                    return Err(TargetError::BadLaw { direction: direction.clone() });
-                }
+            let squares = together.par_iter().zip(laws).map(|(direction, law)| {
+                let law = law.sound(direction)?;
                 let along = |point: &[f64]| point.iter().zip(direction).map(|(x, theta)| x * theta).sum();
                 let projections: Vec<f64> = points.points().map(along).collect();
                 let displacements = &mut vec![0.0; projections.len()];
-                Ok(Workspace::default().displacements(law, &projections, None, displacements))
+                Ok(Workspace::default().displacements(&law, &projections, None, displacements))
             });
-            squared.extend(squares.collect::<Result<Vec<f64>, _>>()?);
+            squared.extend(squares.collect::<Result<Vec<f64>, TargetError>>()?);
         }
         Ok(Self { w2: (squared.iter().sum::<f64>() / directions as f64).sqrt() })
     }

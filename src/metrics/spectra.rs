@@ -6,9 +6,9 @@ use rustfft::num_complex::Complex64;
 
 use super::coordinates::Coordinates;
 use super::error::MeasureError;
-use super::fft::{Transform, TransformBuffers};
 use super::integrands::Integrands;
 use super::samples::Samples;
+use crate::kernel::fft::{Transform, TransformBuffers};
 
 /// Power spectra of an error image, normalised so that white noise is 1 at every frequency.
 ///

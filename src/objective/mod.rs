@@ -49,6 +49,28 @@ pub struct Objective {
     pub(crate) wanted: Wanted,
 }
 
+/// What a step of slices does of a run.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pace {
+    /// Slices per visited pixel and frame, in the mean; per class where none of the terms has classes per
+    /// pixel.
+    pub per_class: f64,
+    /// Steps until one of these has surely been drawn.
+    pub steps: f64,
+    /// Their share of all slices, or of all samples that slices hold, whichever is less.
+    pub share: f64,
+}
+
+impl Pace {
+    /// Steps that draw so many slices per class.
+    pub(crate) fn steps_of(&self, slices_per_class: u64) -> u64 {
+        match slices_per_class {
+            0 => 0,
+            slices => (slices as f64 / self.per_class).ceil().max(self.steps) as u64,
+        }
+    }
+}
+
 impl Objective {
     /// Checks and plans the terms of a configuration.
     ///
@@ -163,9 +185,12 @@ impl Objective {
             config.terms.iter().filter(descended).map(slices).sum(),
         ];
         let share = if given < all { given / all } else { 1.0 };
-        let mut checked = Vec::new();
+        let mut checked: Vec<(usize, Term, FilterFamily)> = Vec::new();
         for (index, term) in terms {
-            let family = PlannedTerm::family(&term, extent, domains, wanted.clone());
+            // Terms of several groups share what they say of the lattice.
+            let same = |(_, other, _): &&(usize, Term, FilterFamily)| other.classes == term.classes;
+            let shared = checked.iter().rfind(same).map(|(_, _, family)| family.clone());
+            let family = PlannedTerm::family(&term, extent, domains, wanted.clone(), shared);
             checked.extend(family.map_err(|problem| problem.of(index))?.map(|family| (index, term, family)));
         }
         if checked.is_empty() {
@@ -183,7 +208,7 @@ impl Objective {
         })?;
         let plan = |(_, term, family)| PlannedTerm::new(term, family, slicing, &mut banks);
         let mut planned: Vec<PlannedTerm> = checked.into_iter().map(plan).collect();
-        share_work(&mut planned, extent, slicing, share);
+        share_work(&mut planned, extent, slicing, share)?;
         Ok(Self { extent, dims, domains: domains.clone(), terms: planned, share, wanted })
     }
 
@@ -221,28 +246,39 @@ impl Objective {
             && term.spec.dims.iter().all(|&dim| self.domains[dim] == Domain::Interval)
     }
 
-    /// Slices of lattice terms that a step of a whole table draws per visited pixel and frame, in the mean;
-    /// per class where none of the terms has classes per pixel. Of a part of its dimensions, it draws fewer.
-    pub(crate) fn slices_per_class_and_step(&self) -> f64 {
-        let steady: Vec<_> =
-            self.terms.iter().filter(|term| term.steady && term.spec.role == Role::Descend).collect();
-        if !steady.is_empty() {
-            let slices: f64 = steady.iter().map(|term| term.slices()).sum();
-            return slices / steady.iter().map(|term| term.family.visits()).sum::<usize>() as f64;
-        }
-        let slices = |term: &PlannedTerm| match term.spec.classes {
-            Classes::Lattice { .. } => term.slices(),
-            _ => 0.0,
-        };
-        let lattice: f64 = self.terms.iter().map(slices).sum();
-        if lattice > 0.0 {
-            return lattice / (classes(&self.terms, self.extent) as f64 * self.share);
-        }
+    /// How steps are counted: by the descended terms that draw the same in every step; else by those of a
+    /// lattice; else by all that descend, or by all.
+    pub(crate) fn pace(&self) -> Pace {
         let descended = |term: &&PlannedTerm| term.spec.role == Role::Descend;
+        let is_lattice = |term: &&PlannedTerm| matches!(term.spec.classes, Classes::Lattice { .. });
+        let steady: Vec<_> = self.terms.iter().filter(|term| term.steady && descended(term)).collect();
+        let lattice: Vec<_> = self.terms.iter().filter(is_lattice).collect();
         let any = self.terms.iter().any(|term| descended(&term));
-        let counted = || self.terms.iter().filter(|term| !any || descended(term));
-        let slices: f64 = counted().map(PlannedTerm::slices).sum();
-        slices / counted().map(|term| term.family.visits()).sum::<usize>() as f64
+        let visits = |terms: &[&PlannedTerm]| terms.iter().map(|term| term.family.visits()).sum();
+        let (counted, classes): (Vec<&PlannedTerm>, f64) = if !steady.is_empty() {
+            let visits: usize = visits(&steady);
+            (steady, visits as f64)
+        } else if !lattice.is_empty() {
+            // As many steps as for a whole table, of whose dimensions these may be a part.
+            (lattice, classes(&self.terms, self.extent) as f64 * self.share)
+        } else {
+            let counted: Vec<_> = self.terms.iter().filter(|term| !any || descended(term)).collect();
+            let visits: usize = visits(&counted);
+            (counted, visits as f64)
+        };
+        let sum = |of: fn(&PlannedTerm) -> f64| {
+            let counted: f64 = counted.iter().map(|term| of(term)).sum();
+            (counted, counted / self.terms.iter().map(of).sum::<f64>())
+        };
+        let (slices, of_slices) = sum(PlannedTerm::slices);
+        let (_, of_touches) = sum(|term| term.slices() * term.family.mean_size());
+        let rate = counted.iter().map(|term| term.rate).fold(0.0, f64::max);
+        Pace { per_class: slices / classes, steps: (1.0 / rate).ceil(), share: of_slices.min(of_touches) }
+    }
+
+    /// Samples that the subsets of a step hold, in the mean.
+    pub(crate) fn touches_per_step(&self) -> f64 {
+        self.terms.iter().map(|term| term.slices() * term.family.mean_size()).sum()
     }
 
     /// Factor on what the slices of a class pull.

@@ -7,7 +7,7 @@ use crate::config::{Role, Slicing, Term};
 use crate::directions::Slicer;
 use crate::directions::banks::Banks;
 use crate::directions::cube_bank::Boundary;
-use crate::error::{GroupError, RangeError, TermError};
+use crate::error::{ConfigError, GroupError, RangeError, TermError};
 use crate::table::domain::Domain;
 use crate::table::extent::Extent;
 use crate::targets::Target;
@@ -43,20 +43,28 @@ pub(crate) struct PlannedTerm {
 const MOST_SIZES: usize = 128;
 /// Classes of a term that a steady step visits at most.
 const VISITS: usize = 16;
+/// Samples that the subsets of a batch hold together, at most: a second or some.
+const MOST_TOUCHES: usize = 1 << 26;
+/// The same for each sample of a large table.
+const TOUCHES_PER_SAMPLE: usize = 64;
+/// Most slices of a batch, where an epoch has fewer.
+const MOST_SLICES: usize = 1 << 22;
 /// Levels of a class that a steady step draws.
 const LEVELS: usize = 4;
 
 impl PlannedTerm {
-    /// Checks a term and lists its classes; `None` if no demand touches any of them.
+    /// Checks a term and lists its classes, or takes those that another one has; `None` if no demand touches
+    /// any of them.
     pub(crate) fn family(
         term: &Term,
         extent: Extent,
         domains: &[Domain],
         wanted: Wanted,
+        shared: Option<FilterFamily>,
     ) -> Result<Option<FilterFamily>, TermError> {
         let dims = domains.len();
-        let is_weight = term.weight > 0.0 && term.weight.is_finite();
-        RangeError::check(is_weight, "the weight of a term", term.weight, "above 0 and finite")?;
+        let is_weight = (1e-15..=1e15).contains(&term.weight);
+        RangeError::check(is_weight, "the weight of a term", term.weight, "from 1e-15 to 1e15")?;
         GroupError::check(&term.dims, dims)?;
         if let Some(target) = term.target.dims()
             && target != term.dims.len()
@@ -68,7 +76,10 @@ impl PlannedTerm {
         {
             return Err(TermError::TargetOnTorus { dimension });
         }
-        let family = FilterFamily::new(&term.classes, extent, wanted)?;
+        let family = match shared {
+            Some(family) => family,
+            None => FilterFamily::new(&term.classes, extent, wanted)?,
+        };
         Ok(Some(family).filter(|family| family.visits() > 0))
     }
 
@@ -142,19 +153,34 @@ impl PlannedTerm {
 /// weight; a slice touches as many samples as its subset holds. Of terms that make a `share` of the slices of
 /// a whole table, a step draws that share. Elsewhere there are few classes, none of
 /// which can be spared in a step: all are drawn, and the weights of the terms enter as factors.
-pub(crate) fn share_work(terms: &mut [PlannedTerm], extent: Extent, slicing: &Slicing, share: f64) {
+///
+/// # Errors
+/// A batch that would take all too long.
+pub(crate) fn share_work(
+    terms: &mut [PlannedTerm],
+    extent: Extent,
+    slicing: &Slicing,
+    share: f64,
+) -> Result<(), ConfigError> {
     let descended = |term: &&PlannedTerm| term.spec.role == Role::Descend;
     let per_site = !terms.iter().any(|term| descended(&term))
         || terms.iter().filter(descended).any(|term| term.family.is_per_site());
     let touches = |term: &PlannedTerm| term.spec.weight / term.family.mean_size();
     if per_site || slicing.batch_slices.is_some() {
-        let default = || (classes(terms, extent) * slicing.directions).div_ceil(16) as f64 * share;
-        let slices = slicing.batch_slices.map_or_else(default, |slices| slices as f64);
         let total: f64 = terms.iter().map(touches).sum();
+        let per_slice = terms.iter().map(|term| term.spec.weight).sum::<f64>() / total;
+        let touches_of_step = MOST_TOUCHES.max(TOUCHES_PER_SAMPLE * extent.samples());
+        let most = (touches_of_step as f64 / per_slice) as usize;
+        let most = most.clamp(1, MOST_SLICES.max(16 * extent.sites()));
+        if let Some(slices) = slicing.batch_slices.filter(|&slices| slices > most) {
+            return Err(ConfigError::Batch { slices, most });
+        }
+        let default = || (classes(terms, extent) * slicing.directions).div_ceil(16).min(most) as f64 * share;
+        let slices = slicing.batch_slices.map_or_else(default, |slices| slices as f64);
         for term in terms {
             term.rate = touches(term) / total * slices / term.slicer.per_subset() as f64;
         }
-        return;
+        return Ok(());
     }
     for term in terms.iter_mut() {
         term.visit_steadily(slicing.directions);
@@ -162,6 +188,7 @@ pub(crate) fn share_work(terms: &mut [PlannedTerm], extent: Extent, slicing: &Sl
     }
     let largest = terms.iter().map(|term| term.pull).fold(0.0, f64::max);
     terms.iter_mut().for_each(|term| term.pull /= largest);
+    Ok(())
 }
 
 /// Pixels and frames that the kernels visit; all of them if there is no kernel.

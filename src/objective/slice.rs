@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::Objective;
-use crate::error::{ObjectiveError, SliceError};
+use crate::error::{ObjectiveError, SliceError, TargetError};
 use crate::laws::distance::Workspace;
 use crate::table::domain::Domain;
 
@@ -72,7 +72,8 @@ impl Objective {
     /// summation.
     ///
     /// # Errors
-    /// A wrong number of points, a point outside `[0, 1)`, a slice that does not fit the objective.
+    /// A wrong number of points, a point outside `[0, 1)`, a slice that does not fit the objective or along
+    /// which a target of the caller's own has no law.
     pub fn value_and_gradient(
         &self,
         points: &[f64],
@@ -86,9 +87,12 @@ impl Objective {
         // Chunks bound the memory; their results are added in order, whatever the number of threads.
         let (mut value, mut gradient) = (0.0, vec![0.0; points.len()]);
         let largest = self.terms.iter().flat_map(|term| term.family.sizes()).max().unwrap_or(1);
-        for slices in slices.chunks((MOST_TOUCHES / largest).clamp(1, 4096)) {
+        let per_chunk = (MOST_TOUCHES / largest).clamp(1, 4096);
+        for (first, slices) in (0..).step_by(per_chunk).zip(slices.chunks(per_chunk)) {
             let moved: Vec<_> = slices.par_iter().map(|slice| self.transport(points, slice)).collect();
-            for (slice, moved) in slices.iter().zip(moved) {
+            for (slice, (number, moved)) in slices.iter().zip((first..).zip(moved)) {
+                let refused = |problem| ObjectiveError::Slice { slice: number, problem };
+                let moved = moved.map_err(|problem| refused(problem.into()))?;
                 let dims = &self.terms[slice.term].spec.dims;
                 let scale = scale * self.emphasis(slice.term, slice.member);
                 value += scale * moved.cost;
@@ -104,20 +108,25 @@ impl Objective {
 
     /// The value alone, of points and slices that are known to fit.
     pub(crate) fn value<T: Copy + Into<f64> + Sync>(&self, points: &[T], slices: &[Slice]) -> f64 {
-        let cost =
-            |slice: &Slice| self.transport(points, slice).cost * self.emphasis(slice.term, slice.member);
+        let cost = |slice: &Slice| {
+            let moved = self.transport(points, slice).map_or(f64::NAN, |moved| moved.cost);
+            moved * self.emphasis(slice.term, slice.member)
+        };
         let costs: Vec<f64> = slices.par_iter().map(cost).collect();
         costs.iter().sum::<f64>() / (self.extent.samples() as f64 * slices.len().max(1) as f64)
     }
 
     /// Transports one slice. Displacements are multiplied by the samples' masses, the cost by their sum.
-    fn transport<T: Copy + Into<f64>>(&self, points: &[T], slice: &Slice) -> Moved {
+    ///
+    /// # Errors
+    /// A target that has no law along the slice.
+    fn transport<T: Copy + Into<f64>>(&self, points: &[T], slice: &Slice) -> Result<Moved, TargetError> {
         let term = &self.terms[slice.term];
         let mut samples = Vec::new();
         term.family.select(slice.member, slice.level, &mut samples);
         let mut projections = Vec::with_capacity(samples.len());
         self.project(points, slice, &samples, &mut projections);
-        let law = term.spec.target.project(&slice.direction);
+        let law = term.spec.target.project(&slice.direction).sound(&slice.direction)?;
         let mut displacements = vec![0.0; samples.len()];
         let mut weights = Vec::new();
         term.family.weigh(slice.member, &mut weights);
@@ -125,7 +134,7 @@ impl Objective {
         let squared = Workspace::default().displacements(&law, &projections, given, &mut displacements);
         displacements.iter_mut().zip(&weights).for_each(|(displacement, weight)| *displacement *= weight);
         let mass = given.map_or(samples.len() as f64, |weights| weights.iter().sum());
-        Moved { cost: mass * squared, samples, displacements }
+        Ok(Moved { cost: mass * squared, samples, displacements })
     }
 
     /// Projections of the listed samples on the slice's direction, after cutting open the torus dimensions.

@@ -10,12 +10,13 @@ use std::ops::ControlFlow;
 
 pub use self::report::{RunReport, SliceStep, StepReport};
 use crate::classes::Demand;
-use crate::config::{Config, Role, Until};
+use crate::config::{Config, Role, Until, check_step};
 use crate::error::ConfigError;
 use crate::objective::Objective;
 use crate::slices::{Picked, Slices, Step};
 use crate::sweeps::{MeanSquare, Motion, Sweeper};
 use crate::table::SampleTable;
+use crate::table::extent::check_memory;
 
 /// Optimises a table of white noise, or a given one.
 ///
@@ -70,12 +71,25 @@ impl Config {
     }
 }
 
+/// Bytes that any run takes for each of the table's, at the least.
+const ROOM: usize = 4;
+
+/// Refuses a table that is too large for this machine's memory before anything is made of it.
+fn check_room(config: &Config) -> Result<(), ConfigError> {
+    let Config { extent, dims, .. } = *config;
+    extent.validate(dims)?;
+    let table = size_of::<f32>() * extent.samples() * dims;
+    Ok(check_memory("optimising the table", ROOM.saturating_mul(table))?)
+}
+
 impl Optimizer {
     /// Starts from white noise; samples whose target is a density or a cloud start from draws of it.
     ///
     /// # Errors
-    /// Whatever [`Objective::new`] refuses, and descent parameters outside their ranges.
+    /// Whatever [`Objective::new`] refuses, descent parameters outside their ranges, and a table of which
+    /// memory does not hold what a run takes.
     pub fn new(config: Config) -> Result<Self, ConfigError> {
+        check_room(&config)?;
         let objective = Objective::new(&config)?;
         Self::with(config, objective)
     }
@@ -100,6 +114,7 @@ impl Optimizer {
     /// # Errors
     /// Whatever [`Objective::for_demand`] refuses, and descent parameters outside their ranges.
     pub fn for_demand(config: Config, demand: &Demand) -> Result<Self, ConfigError> {
+        check_room(&config)?;
         let objective = Objective::for_demand(&config, demand)?;
         Self::with(config, objective)
     }
@@ -169,14 +184,18 @@ impl Optimizer {
     /// they see what the others have made of it.
     ///
     /// For schedules of your own; [`Optimizer::run`] follows those of the configuration.
-    pub fn step(&mut self, rate: f64, balance: f64) -> SliceStep {
-        rayon::scope(|_| self.step_in_pool(rate, balance))
+    ///
+    /// # Errors
+    /// A `rate` or a `balance` outside of `0..=1e6` ([`ConfigError::Range`]). Nothing is changed then.
+    pub fn step(&mut self, rate: f64, balance: f64) -> Result<SliceStep, ConfigError> {
+        check_step(rate, balance)?;
+        Ok(rayon::scope(|_| self.step_in_pool(rate, balance)))
     }
 
     fn step_in_pool(&mut self, rate: f64, balance: f64) -> SliceStep {
         let picks = [Picked::Batch(Role::Descend), Picked::Batch(Role::Balance)];
         let (displacement, slices) = self.advance(self.steps, &picks, rate, balance);
-        self.steps += 1;
+        self.steps = self.steps.wrapping_add(1);
         SliceStep { displacement, slices }
     }
 
@@ -200,8 +219,10 @@ impl Optimizer {
     /// Returns the root mean square pull on a coordinate.
     ///
     /// # Errors
-    /// A descended term that has no closed form ([`ConfigError::NotInClosedForm`]).
+    /// A `rate` or a `balance` outside of `0..=1e6` ([`ConfigError::Range`]); a descended term that has no
+    /// closed form ([`ConfigError::NotInClosedForm`]). Nothing is changed then.
     pub fn sweep(&mut self, rate: f64, balance: f64) -> Result<f64, ConfigError> {
+        check_step(rate, balance)?;
         rayon::scope(|_| self.sweep_in_pool(rate, balance))
     }
 

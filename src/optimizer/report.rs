@@ -17,7 +17,8 @@ use crate::table::SampleTable;
 ///
 /// // A schedule of one's own.
 /// let mut optimizer = Optimizer::new(Config::new(Extent::still(16, 16), 2))?;
-/// let steps: Vec<_> = (0..64).map(|step| optimizer.step(0.95_f64.powi(step), 1.0)).collect();
+/// let steps = (0..64).map(|step| optimizer.step(0.95_f64.powi(step), 1.0));
+/// let steps = steps.collect::<Result<Vec<_>, _>>()?;
 /// let mean = |steps: &[fsot::optimizer::SliceStep]| -> f64 {
 ///     steps.iter().map(|step| step.displacement).sum::<f64>() / steps.len() as f64
 /// };

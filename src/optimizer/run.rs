@@ -28,8 +28,10 @@ impl Optimizer {
     /// the last run's ended.
     ///
     /// # Errors
-    /// A number of seconds or an improvement outside its range; sweeps of an objective that has no closed
-    /// form. Nothing is changed then.
+    /// A number of seconds or an improvement outside its range; more than 1e9 slices per class or sweeps;
+    /// sweeps of an objective that has no closed form; slices of one whose terms have all too different
+    /// weights ([`ConfigError::Uneven`]); fewer seconds than one step or sweep takes
+    /// ([`ConfigError::TooShort`]). Nothing is changed then.
     pub fn run_observed(
         &mut self,
         until: Until,
@@ -46,13 +48,18 @@ impl Optimizer {
     ) -> Result<RunReport, ConfigError> {
         // A closure that panicked in an earlier run may have left one behind.
         self.sweeper = None;
-        let work = self.plan(until)?;
+        let work = match self.plan(until) {
+            Ok(work) => work,
+            Err(error) => {
+                self.sweeper = None;
+                return Err(error);
+            }
+        };
         let Work { frame_sweeps, slices_per_class, sweeps } = work;
         let frame = if frame_sweeps > 0 { self.of_a_frame()? } else { None };
         let frame_sweeps = if frame.is_some() { frame_sweeps } else { 0 };
         let work = Work { frame_sweeps, ..work };
-        let per_step = self.objective.slices_per_class_and_step();
-        let batches = (slices_per_class as f64 / per_step).ceil() as u64;
+        let batches = self.objective.pace().steps_of(slices_per_class);
         let steps_per_sweep = if sweeps > 0 { self.sweeper()?.steps() } else { 1 };
         let swept = sweeps.saturating_mul(steps_per_sweep as u64);
         let steps = frame_sweeps.saturating_add(batches).saturating_add(swept);

@@ -53,6 +53,9 @@ impl Picked {
     }
 }
 
+/// Visits of a term's classes that `f64` tells apart, with some room for fractions.
+const MOST_VISITS: f64 = (1_u64 << 50) as f64;
+
 impl Objective {
     /// The subsets that are drawn in a step. `orders` keeps the permutations between steps.
     pub(crate) fn draw_subsets(
@@ -81,8 +84,10 @@ impl Objective {
             let steady = term.steady && pick == Picked::Batch(pick.role());
             // A steady term draws a whole number of subsets, each step the same.
             let phase = if steady { 0.0 } else { phase };
-            let begin = (step as f64 * rate + phase) as u64;
-            let end = ((step + 1) as f64 * rate + phase) as u64;
+            // Visits begin anew before they are too many to be counted one by one.
+            let place = step % (MOST_VISITS / rate.max(1.0)) as u64;
+            let begin = (place as f64 * rate + phase) as u64;
+            let end = ((place + 1) as f64 * rate + phase) as u64;
             let mut generator = random::generator(seed, Purpose::Strata, step, index as u64 | pick.mark());
             let turn = match pick {
                 Picked::Batch(_) => generator.random(),

@@ -54,7 +54,7 @@ fn add_term(
 ) -> f64 {
     let (extent, dims) = (objective.extent, &term.spec.dims);
     let taps = term.family.taps().unwrap_or_default();
-    let pairs = autocorrelation(taps, &extent, 0.0);
+    let pairs = autocorrelation(taps, &extent, 0.0).expect("the taps of a planned kernel");
     let field = MeanDistance::new();
     let wants = |site: usize| objective.wanted.site(site);
     let samples_of = |site: usize| site * extent.spp..(site + 1) * extent.spp;

@@ -64,7 +64,8 @@ impl Pairs {
         // Every term is meant over pixels by the square of what a filter holds, as in `Objective::cramer`.
         let mut sums = BTreeMap::new();
         for term in terms {
-            let of_term = autocorrelation(term.family.taps().unwrap_or_default(), &extent, truncation);
+            let taps = term.family.taps().unwrap_or_default();
+            let of_term = autocorrelation(taps, &extent, truncation).expect("the taps of a planned kernel");
             let total: f64 = of_term.iter().map(|tap| tap.weight).sum();
             for tap in of_term {
                 *sums.entry((tap.dt, tap.dy, tap.dx)).or_insert(0.0) +=

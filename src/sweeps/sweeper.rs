@@ -150,6 +150,11 @@ impl Sweeper {
         self.behind = true;
     }
 
+    /// Forgets what has moved here, and reads the table anew when it is needed.
+    pub(crate) fn forget(&mut self) {
+        (self.ahead, self.behind) = (false, true);
+    }
+
     /// Writes the table back, if samples have moved.
     pub(crate) fn store(&mut self, points: &mut [f32]) {
         self.write_to(points);

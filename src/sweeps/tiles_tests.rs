@@ -7,7 +7,7 @@ fn taps(extent: &Extent) -> Vec<Tap> {
         SpatialKernel::Gaussian { sigma_px: 1.5 },
         TemporalKernel::Gaussian { sigma_frames: 1.0 },
     );
-    autocorrelation(&kernel.taps(extent).unwrap(), extent, 0.007)
+    autocorrelation(&kernel.taps(extent).unwrap(), extent, 0.007).unwrap()
 }
 
 /// Shapes that are cut evenly, unevenly, in time, and hardly; demanded whole, and in a part that runs over

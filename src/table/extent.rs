@@ -80,26 +80,29 @@ impl Extent {
         Self { frames: 1, height: 1, width: count, spp: 1 }
     }
 
-    /// Sites (pixels × frames) of the table.
+    /// Sites (pixels × frames) of the table; `usize::MAX` if they are more.
     pub fn sites(&self) -> usize {
-        self.frames * self.height * self.width
+        self.frames.saturating_mul(self.height).saturating_mul(self.width)
     }
 
-    /// Samples of the table.
+    /// Samples of the table; `usize::MAX` if they are more.
     pub fn samples(&self) -> usize {
-        self.sites() * self.spp
+        self.sites().saturating_mul(self.spp)
     }
 
-    /// Number of the site; the position must lie inside the extent.
+    /// Number of the site. The position must lie inside the extent; others have a number that is no site's,
+    /// or another's.
     pub fn site_index(&self, site: Site) -> usize {
-        (site.frame * self.height + site.y) * self.width + site.x
+        let row = site.frame.wrapping_mul(self.height).wrapping_add(site.y);
+        row.wrapping_mul(self.width).wrapping_add(site.x)
     }
 
-    /// Position of the site with this number.
+    /// Position of the site with this number. Numbers from [`Extent::sites`] on lie in frames beyond the
+    /// last; an empty axis counts as one of length 1.
     pub fn site(&self, index: usize) -> Site {
-        let x = index % self.width;
-        let row = index / self.width;
-        Site { frame: row / self.height, y: row % self.height, x }
+        let [height, width] = [self.height, self.width].map(|len| len.max(1));
+        let (x, row) = (index % width, index / width);
+        Site { frame: row / height, y: row % height, x }
     }
 
     /// Where the `use_number`th use of a table in a frame should read it: the table displaced as a whole, by
@@ -128,9 +131,13 @@ impl Extent {
         Site { frame: 0, y: at(R2[1], self.height), x: at(R2[0], self.width) }
     }
 
-    /// The site that lies `(dt, dy, dx)` away, wrapping in all three axes.
+    /// The site that lies `(dt, dy, dx)` away, wrapping in all three axes; an empty one counts as one of
+    /// length 1.
     pub fn wrapped(&self, site: Site, (dt, dy, dx): (i64, i64, i64)) -> Site {
-        let wrap = |at: usize, by: i64, len: usize| (at as i64 + by).rem_euclid(len as i64) as usize;
+        let wrap = |at: usize, by: i64, len: usize| {
+            let len = len.clamp(1, i64::MAX as usize);
+            (at % len + by.rem_euclid(len as i64) as usize) % len
+        };
         Site {
             frame: wrap(site.frame, dt, self.frames),
             y: wrap(site.y, dy, self.height),
@@ -166,6 +173,16 @@ impl Extent {
         }
         Ok(())
     }
+}
+
+/// Refuses what the system would not give memory for. It is asked for that and gets it back at once; systems
+/// that promise more than they have refuse what is beyond all of it.
+pub(crate) fn check_memory(what: &'static str, bytes: usize) -> Result<(), ExtentError> {
+    let mut room = Vec::<u8>::new();
+    let reserved = room.try_reserve_exact(bytes);
+    // Else the compiler may find that nobody uses it, and not ask.
+    std::hint::black_box(room.as_ptr());
+    reserved.map_err(|_| ExtentError::NoMemory { what, bytes })
 }
 
 #[cfg(test)]
@@ -214,6 +231,14 @@ mod tests {
         let corner = Site { frame: 0, y: 0, x: 0 };
         assert_eq!(extent.wrapped(corner, (-1, -1, -1)), Site { frame: 2, y: 4, x: 6 });
         assert_eq!(extent.wrapped(corner, (-7, 12, 16)), Site { frame: 2, y: 2, x: 2 });
+    }
+
+    #[test]
+    fn what_no_memory_holds_is_refused() {
+        let bytes = usize::MAX / 4;
+        assert_eq!(check_memory("a table", 1 << 20), Ok(()));
+        let error = check_memory("a table", bytes).unwrap_err();
+        assert_eq!(error, ExtentError::NoMemory { what: "a table", bytes });
     }
 
     #[test]

@@ -8,7 +8,7 @@ use ndarray::ArrayView5;
 
 use crate::error::TableError;
 use crate::random;
-use crate::table::extent::{Extent, Site};
+use crate::table::extent::{Extent, Site, check_memory};
 
 /// Random numbers for a renderer: `x[frame, y, x, sample, dim]` in `[0, 1)`.
 ///
@@ -55,9 +55,10 @@ impl SampleTable {
     /// Independent uniform numbers: white noise, the start of every optimisation.
     ///
     /// # Errors
-    /// An empty or oversized extent.
+    /// An empty or oversized extent, or one that memory does not hold.
     pub fn white_noise(extent: Extent, dims: usize, seed: u64) -> Result<Self, TableError> {
         extent.validate(dims)?;
+        check_memory("the table", size_of::<f32>() * extent.samples() * dims)?;
         let values = random::uniforms(seed, extent.samples() * dims);
         Ok(Self { extent, dims, values })
     }

@@ -77,20 +77,25 @@ impl Target {
     /// The law of `x·direction`, where `x` follows this target and `D = direction.len()`.
     ///
     /// The direction need not be a unit vector: its components must be finite, with a finite sum of absolute
-    /// values, and may have any sign. A zero or empty direction gives the point mass at 0.
+    /// values, and may have any sign. A zero or empty direction gives the point mass at 0. Others have no
+    /// law: theirs is NaN, and refused when it is used; so is a density's where that sum is not from 1e-100
+    /// to 1e100.
     ///
     /// Cube: O(`D`·grid), for a grid of at most eight pieces up to `D` = 4 and of some hundreds beyond or
     /// where a component is below 1e-4 of the sum. Density: O(pixels). Cloud: O(points · log points). See
     /// [`Projected`] for the accuracy.
     pub fn project(&self, direction: &[f64]) -> Projected {
+        let sum: f64 = direction.iter().map(|component| component.abs()).sum();
         match self {
+            Target::Custom(custom) => custom.get().project(direction),
+            _ if !sum.is_finite() => Projected::none(),
+            Target::Density(_) if sum > 0.0 && !(1e-100..=1e100).contains(&sum) => Projected::none(),
             Target::UniformCube => Projected::of_cube(direction),
             Target::Density(_) | Target::Densities(_) => {
                 let mut laws = self.project_all(&[direction.to_vec()]);
                 laws.pop().unwrap_or_else(|| Projected::from_samples(Vec::new()))
             }
             Target::Cloud(cloud) => Projected::of_pieces(cloud.project(direction)),
-            Target::Custom(custom) => custom.get().project(direction),
         }
     }
 

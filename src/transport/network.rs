@@ -194,7 +194,8 @@ mod tests {
     fn long_networks_sort_as_the_standard_library_does() {
         for len in [17, 31, 64, 97, 100, 255, 256, 257, 700, 1024] {
             let network = Network::of_blocks(Network::blocks(len));
-            let scramble = |i: usize, lane: usize| (i as u32 * 2_654_435_761).rotate_left(lane as u32) % 1000;
+            let hash = |i: usize| (i as u32).wrapping_mul(2_654_435_761);
+            let scramble = |i: usize, lane: usize| hash(i).rotate_left(lane as u32) % 1000;
             let mut keys: Vec<[u32; LANES]> =
                 (0..len).map(|i| std::array::from_fn(|lane| scramble(i, lane))).collect();
             let columns: Vec<Vec<u32>> = (0..LANES)

@@ -1,7 +1,7 @@
 //! What `value_and_gradient` refuses, and how it says so.
 
 use fsot::classes::{Classes, FilterForm};
-use fsot::config::Domain;
+use fsot::config::{Domain, Short};
 use fsot::objective::{ObjectiveError, Slice, SliceError, ValueAndGradient};
 use fsot::{Extent, Objective};
 
@@ -36,7 +36,7 @@ fn points_that_do_not_fit() {
     for value in [1.0, -1e-300, f64::NAN, f64::INFINITY, 1.5] {
         let mut points = vec![0.5; 72];
         points[17] = value;
-        let words = format!("point coordinate 17 is {value}: give finite values in [0, 1)");
+        let words = format!("point coordinate 17 is {}: give finite values in [0, 1)", Short::from(value));
         // Also with nothing to do.
         for slices in [&[good()][..], &[]] {
             let error = refusal(&points, slices, &words);
@@ -90,6 +90,7 @@ fn slices_with_unusable_numbers() {
             (Slice { direction: vec![0.5, value], ..good() }, "direction"),
             (Slice { cut: vec![value, 0.5], ..good() }, "cut"),
         ] {
+            let value = Short::from(value);
             let words = format!("{what} is {value}: give finite values of reasonable size");
             assert!(matches!(
                 bad_slice(slice, &words),

@@ -109,7 +109,7 @@ fn terms_that_nobody_demands_are_left_out() {
             let mut optimizer = Optimizer::for_demand(config, &demand(30)).unwrap();
             assert_eq!(optimizer.objective().terms().count(), 1);
             let before = optimizer.table();
-            optimizer.step(1.0, 1.0);
+            optimizer.step(1.0, 1.0).unwrap();
             let after = optimizer.table();
             assert_eq!(before.values()[..60], after.values()[..60]);
             assert!((60..160).all(|i| before.values()[i] != after.values()[i]));
@@ -145,7 +145,7 @@ fn a_class_that_nobody_demands_is_left_alone() {
     let demand = Demand::new([1, 1, 80], flags, vec![vec![0, 1]]).unwrap();
     let mut optimizer = Optimizer::for_demand(config, &demand).unwrap();
     let before = optimizer.table();
-    let slices = optimizer.step(1.0, 1.0).slices;
+    let slices = optimizer.step(1.0, 1.0).unwrap().slices;
     // Two classes hold demanded points: the first label, and the union, which is the same set now.
     assert_eq!(slices, 32);
     let after = optimizer.table();

@@ -199,7 +199,7 @@ fn the_engine_follows_the_gradient_of_a_density() {
         let before: Vec<f64> = optimizer.table().values().iter().map(|&value| value.into()).collect();
         let slices = optimizer.objective().draw(config.seed, 0, Role::Descend);
         let gradient = optimizer.objective().value_and_gradient(&before, &slices).unwrap().gradient;
-        optimizer.step(1.0, 1.0);
+        optimizer.step(1.0, 1.0).unwrap();
         let after = optimizer.table();
         let scales = Target::Density(density.clone().into()).scales(2);
         let mut off = Vec::new();

@@ -31,7 +31,7 @@ fn the_bound_falls_along_a_run() {
                 (format!("{:.3}", last.ratio_to_white_noise), f64::NEG_INFINITY);
             for step in 0..steps {
                 let progress = step as f64 / steps as f64;
-                optimizer.step(descent.rate().at(progress), balance.at(progress));
+                optimizer.step(descent.rate().at(progress), balance.at(progress)).unwrap();
                 if (step + 1) % (steps / CHECKPOINTS) == 0 {
                     let now = measure(&optimizer);
                     trace += &format!(" {:.3}", now.ratio_to_white_noise);

@@ -29,7 +29,7 @@ fn a_million_samples_in_one_class() {
     };
     let before = value(&optimizer);
     for step in 0..12 {
-        let SliceStep { displacement, slices, .. } = optimizer.step(0.8_f64.powi(step), 1.0);
+        let SliceStep { displacement, slices, .. } = optimizer.step(0.8_f64.powi(step), 1.0).unwrap();
         assert!(displacement.is_finite() && slices == 4);
     }
     let after = value(&optimizer);

@@ -71,7 +71,7 @@ impl Case {
             if step % 3 == 0 {
                 sizes.extend(self.check_step(&config, &before));
             }
-            optimizer.step(0.8, 0.7);
+            optimizer.step(0.8, 0.7).unwrap();
         }
         sizes
     }
@@ -82,7 +82,7 @@ impl Case {
         // moves on from where the first ended.
         let step = |balance: f64| {
             let mut optimizer = Optimizer::from_table(config.clone(), before.clone()).unwrap();
-            let SliceStep { displacement, slices, .. } = optimizer.step(0.8, balance);
+            let SliceStep { displacement, slices, .. } = optimizer.step(0.8, balance).unwrap();
             (optimizer.into_table(), displacement, slices)
         };
         let (descended, displacement, slices) = step(0.0);
@@ -207,7 +207,7 @@ fn other_numbers_of_dimensions() {
     let case = Case { groups, ..Case::new([1, 12, 12, 1], 3) };
     let (before, mut optimizer) =
         (Optimizer::new(case.config()).unwrap().table(), Optimizer::new(case.config()).unwrap());
-    optimizer.step(1.0, 1.0);
+    optimizer.step(1.0, 1.0).unwrap();
     let after = optimizer.table();
     for (index, (a, b)) in before.values().iter().zip(after.values()).enumerate() {
         assert_eq!(a == b, index % 3 == 1, "{index}");
@@ -270,14 +270,14 @@ fn one_sample() {
                 let before = optimizer.table();
                 let slices = optimizer.objective().draw(config.seed, 0, Role::Descend);
                 let mut fresh = Optimizer::from_table(config.clone(), before.clone()).unwrap();
-                fresh.step(0.5, 0.0);
+                fresh.step(0.5, 0.0).unwrap();
                 let pull = textbook::pull(&config, &slices, before.values(), 0.0);
                 let expected = textbook::moved(&config, before.values(), &pull, 0.5);
                 for (given, expected) in fresh.table().values().iter().zip(expected) {
                     // As in `Case::tolerance`, with five dimensions.
                     assert!((f64::from(*given) - expected).abs() < 1.5e-5, "{given} {expected}");
                 }
-                optimizer.step(0.5, 0.5);
+                optimizer.step(0.5, 0.5).unwrap();
             }
         }
     }
@@ -302,7 +302,7 @@ fn weights_too_small_to_have_a_cell() {
         config.slicing.batch_slices = Some(2);
         let mut optimizer = Optimizer::new(config).unwrap();
         assert_eq!(optimizer.objective().taps(0).unwrap().len(), 256);
-        let displacement = optimizer.step(1.0, 1.0).displacement;
+        let displacement = optimizer.step(1.0, 1.0).unwrap().displacement;
         assert!((0.0..0.1).contains(&displacement), "{displacement}");
         assert!(optimizer.table().values().iter().all(|value| (0.0..1.0).contains(value)));
     }
@@ -325,7 +325,7 @@ fn the_pull_is_the_negative_gradient() {
         let gradient = optimizer.objective().value_and_gradient(&points, &slices).unwrap().gradient;
         let pull = textbook::pull(&config, &slices, before.values(), case.tie());
         let rate = 0.5;
-        optimizer.step(rate, 0.0);
+        optimizer.step(rate, 0.0).unwrap();
         let scale = config.extent.samples() as f64 * slices.len() as f64 * d / 2.0;
         let mut compared = 0;
         for (coordinate, &after) in optimizer.table().values().iter().enumerate() {

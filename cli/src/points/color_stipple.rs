@@ -16,6 +16,7 @@ use super::making::{Figures, make, tell};
 use super::page::{sheet, sheet_size};
 use super::picture::{Reading, refusal};
 use super::set::PointSet;
+use crate::console;
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use crate::{Ended, Failure, Shared};
@@ -122,7 +123,8 @@ impl Figures for InkLikenesses {
         writeln!(out, "{} sets of inks", self.sets)?;
         for InkLikeness { ink, likeness } in &self.inks {
             let Likeness { points, correlation, strays, worst, advice, .. } = likeness;
-            writeln!(out, "{ink}: {points} points, correlation {correlation:.4}, strays {strays}")?;
+            let points = console::points(*points);
+            writeln!(out, "{ink}: {points}, correlation {correlation:.4}, strays {strays}")?;
             writeln!(out, "  {worst}")?;
             advice.iter().try_for_each(|advice| writeln!(out, "  {advice}"))?;
         }

@@ -9,9 +9,9 @@ use fsot::{Config, Optimizer, SampleTable, Until};
 use serde::Serialize;
 
 use super::files::Places;
-use crate::console::Console;
+use crate::console::{self, Console};
 use crate::progress::Progress;
-use crate::{Ended, Failure, Shared, run};
+use crate::{Ended, Failure, Shared, advice, run};
 
 /// Points that a run has made.
 pub struct Made {
@@ -44,14 +44,17 @@ impl Work {
 /// Optimises points by so many slices per class, or until a signal comes.
 pub fn make(config: Config, slices: u64, progress: &Progress) -> Result<Made, Failure> {
     let begin = Instant::now();
+    let advised = |failure| advice::with_flags(failure, advice::of_points);
     // A signal ends this as it ends any process: there is nothing to keep yet.
-    let mut optimizer = Optimizer::new_observed(config, |share| {
+    let planned = Optimizer::new_observed(config, |share| {
         progress.show_planning(share);
         ControlFlow::Continue(())
-    })?;
+    });
+    let mut optimizer = planned.map_err(|error| advised(error.into()))?;
     progress.end_planning();
     let planning_seconds = begin.elapsed().as_secs_f64();
-    let report = run::observed(&mut optimizer, Until::SlicesPerClass(slices), progress)?;
+    let until = Until::SlicesPerClass(slices);
+    let report = run::observed(&mut optimizer, until, progress).map_err(advised)?;
     let work = Work { planning_seconds, run: RunRecord::from(&report) };
     Ok(Made { table: optimizer.into_table(), work })
 }
@@ -86,7 +89,8 @@ pub fn tell<F: Figures>(
             if *ended_early { format!(", stopped early after {steps} steps") } else { String::new() };
         writeln!(
             out,
-            "{points} points, planned in {planning_seconds:.2} s, optimised in {seconds:.2} s{stopped}"
+            "{}, planned in {planning_seconds:.2} s, optimised in {seconds:.2} s{stopped}",
+            console::points(points)
         )?;
         match figures {
             Some(figures) => figures.words(out)?,

@@ -16,6 +16,7 @@ use super::files::{Files, Record};
 use super::making::{Figures, make, tell};
 use super::page::squares;
 use super::set::PointSet;
+use crate::console;
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use crate::{Ended, Failure, Shared};
@@ -149,7 +150,7 @@ impl Distances {
                 (None, None) => None,
                 (None, Some((slices, seed))) => {
                     let single = Config::classes(&[points], 2, &LabelSubsets::Every);
-                    progress.begin(&format!("{points} points alone"));
+                    progress.begin(&format!("{} alone", console::points(points)));
                     let single = make(single.with_seed(seed.wrapping_add(1)), slices, progress)?;
                     let best = distance_to_uniform(single.table.values())?;
                     alone.insert(points, best);
@@ -167,7 +168,8 @@ impl Figures for Distances {
     fn words(&self, out: &mut dyn Write) -> io::Result<()> {
         for ClassDistance { labels, points, sliced_w2, of_alone } in &self.classes {
             let ratio = of_alone.map_or(String::new(), |ratio| format!(", {ratio:.2} of alone"));
-            writeln!(out, "labels {labels:?}, {points} points: sliced W2 {sliced_w2:.6}{ratio}")?;
+            let points = console::points(*points);
+            writeln!(out, "labels {labels:?}, {points}: sliced W2 {sliced_w2:.6}{ratio}")?;
         }
         if self.classes.iter().any(|class| class.of_alone.is_some_and(|ratio| ratio >= POOR)) {
             writeln!(out, "a class is twice as far from uniform as it should be: give more --slices")?;

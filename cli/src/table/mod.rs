@@ -12,7 +12,7 @@ use crate::console::Console;
 use crate::interrupt::Interrupt;
 use crate::output::{self, Output};
 use crate::progress::Progress;
-use crate::{Ended, Failure, run};
+use crate::{Ended, Failure, advice, run};
 
 /// Makes the table.
 ///
@@ -27,8 +27,10 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
     ];
     output::check(&outputs, &[])?;
     shared.start_threads()?;
-    let mut optimizer = Optimizer::new(arguments.config())?;
-    let report = run::observed(&mut optimizer, arguments.until(), &Progress::new(shared))?;
+    let advised = |failure| advice::with_flags(failure, advice::of_table);
+    let mut optimizer = Optimizer::new(arguments.config()).map_err(|error| advised(error.into()))?;
+    let progress = Progress::new(shared);
+    let report = run::observed(&mut optimizer, arguments.until(), &progress).map_err(advised)?;
 
     // Before the bound, which takes a while and may be stopped.
     let (table, mut metadata) = (optimizer.table(), optimizer.metadata(&report));

@@ -114,6 +114,26 @@ fn temporal_kernels() {
     ]);
 }
 
+/// Whoever has typed a flag knows no field of the library.
+#[test]
+fn the_flags_that_help_are_named() {
+    all_refused(&[
+        ("--width 0", "(--width)"),
+        ("--dims 65", "(--dims)"),
+        ("--width 4000000000", "(--width, --height, --frames, --spp, --dims)"),
+        ("--sigma 1e300", "sigma_px is 1e300: give a value above 0, at most 1e6 (--sigma)"),
+        ("--sigma=-0.1234567890123", "sigma_px is -0.123457: give"),
+        ("--groups 0,1:0", "(--groups)"),
+        ("--groups 0,9", "(--groups)"),
+        ("--temporal ema:2", "(--temporal)"),
+        ("--temporal taps:0,0", "(--temporal)"),
+        ("--no-bound --seconds 0", "(--seconds)"),
+        ("--sweeps 18446744073709551615", "(--sweeps)"),
+        ("--slices-per-class 18446744073709551615", "(--slices-per-class)"),
+        ("--domain torus --sweeps 1", "(--slices-per-class instead of --sweeps)"),
+    ]);
+}
+
 /// What the library refuses takes one line, without usage and hints.
 #[test]
 fn one_sentence_is_enough() {

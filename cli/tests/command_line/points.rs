@@ -144,3 +144,10 @@ fn no_points_are_refused_by_the_name_of_the_flag() {
     }
     assert_eq!(names(home.path()), [""; 0]);
 }
+
+#[test]
+fn one_point_is_one() {
+    let home = tempdir().unwrap();
+    let (made, _) = run(home.path(), "points two-class --counts 1,2 --slices 16 --no-comparison");
+    assert!(made.contains("labels [0], 1 point:") && made.contains("labels [1], 2 points:"), "{made}");
+}

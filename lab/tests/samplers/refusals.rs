@@ -37,7 +37,7 @@ fn bad_parameters_are_named() {
     says(cooled(0.0, 0.0, 1), "the first temperature is 0");
     says(cooled(f64::INFINITY, 1.0, 1), "the first temperature is inf");
     says(cooled(1.0, 2.0, 1), "the last temperature is 2");
-    says(cooled(1.0, 1.0, u64::MAX), "sweeps is 1844");
+    says(cooled(1.0, 1.0, u64::MAX), "sweeps is 1.84467e19");
     says(DitherMask { sigma_px: 0.0, ..mask }.table(), "sigma_px is 0");
     says(DitherMask { sigma_value: -1.0, ..mask }.table(), "sigma_value is -1");
     says(DitherMask { sigma_value: 1e-30, ..mask }.table(), "sigma_value is");

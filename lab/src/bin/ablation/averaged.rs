@@ -19,7 +19,7 @@ pub fn run(mut optimizer: Optimizer, until: Until, share: f64) -> Result<(Sample
     let begin = Instant::now();
     for step in 0..steps {
         let progress = step as f64 / steps as f64;
-        optimizer.step(config.descent.rate().at(progress), config.balance.at(progress));
+        optimizer.step(config.descent.rate().at(progress), config.balance.at(progress))?;
         if step + averaged >= steps {
             let table = optimizer.table();
             sums.iter_mut().zip(table.values()).for_each(|(sum, &value)| *sum += f64::from(value));

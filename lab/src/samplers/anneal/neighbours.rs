@@ -58,7 +58,7 @@ impl Neighbours {
         for kernel in kernels {
             let taps = kernel.taps(extent)?;
             let sum: f64 = taps.iter().map(|tap| tap.weight).sum();
-            for Tap { dt, dy, dx, weight } in autocorrelation(&taps, extent, 0.0) {
+            for Tap { dt, dy, dx, weight } in autocorrelation(&taps, extent, 0.0)? {
                 *weights.entry((dt, dy, dx)).or_default() += weight / (sum * sum);
             }
         }

@@ -8,7 +8,7 @@ use rustfft::{Fft, FftPlanner};
 /// Forward transform of arrays `[frame][y][x]`: `E(k) = Σ e(p) exp(−2πi k·p)`, unnormalised.
 ///
 /// Planned once, O(n log n) for any lengths.
-pub(super) struct Transform {
+pub(crate) struct Transform {
     frames: usize,
     height: usize,
     width: usize,
@@ -16,7 +16,7 @@ pub(super) struct Transform {
 }
 
 /// Buffers of one thread.
-pub(super) struct TransformBuffers {
+pub(crate) struct TransformBuffers {
     /// Input of [`Transform::forward`] in order `[frame][y][x]`; output in order `[kx][ky][kt]`.
     pub data: Vec<Complex64>,
     turned: Vec<Complex64>,
