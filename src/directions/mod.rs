@@ -102,7 +102,7 @@ impl Slicer {
         }
         let mut slicer = Self { dims, per_subset, axis_share, bank, target_bank, fan: Vec::new() };
         let spacing = slicer.spacing();
-        let listed = if per_subset % 2 == 0 { per_subset / 2 } else { per_subset };
+        let listed = if per_subset.is_multiple_of(2) { per_subset / 2 } else { per_subset };
         slicer.fan.extend((0..listed).map(|lane| {
             let (sin, cos) = libm::sincos(spacing * lane as f64);
             [cos, sin]

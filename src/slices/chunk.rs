@@ -98,10 +98,10 @@ impl<'a, Draws: Iterator<Item = &'a SubsetDraw>> WithSimd for Transport<'a, Draw
         let mut before = None;
         for draw in draws {
             let term = &objective.terms[draw.term as usize];
-            if let Some(before) = before.replace(term) {
-                if !std::ptr::eq(before, term) {
-                    chunk.transport_abreast(simd, before, points, objective.dims, scratch);
-                }
+            if let Some(before) = before.replace(term)
+                && !std::ptr::eq(before, term)
+            {
+                chunk.transport_abreast(simd, before, points, objective.dims, scratch);
             }
             objective.draw_directions(seed, step, draw, &mut scratch.directions, &mut scratch.cut);
             // A long run needs no list.

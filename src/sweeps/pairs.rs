@@ -253,10 +253,10 @@ impl Pairs {
             return;
         }
         let (mut squares, mut strengths) = ([self.softness; LANES], [0.0; LANES]);
-        for k in 0..dims {
+        for (k, own) in own[..dims].iter().enumerate() {
             let other = other(k);
             for lane in 0..LANES {
-                let away = own[k][lane] - other[lane];
+                let away = own[lane] - other[lane];
                 squares[lane] += away * away;
             }
         }
