@@ -9,7 +9,7 @@ use super::tiles::{Cell, Run, Tiles};
 use crate::kernel::{Tap, autocorrelation};
 use crate::objective::plan::PlannedTerm;
 use crate::simd::{LANES, Row};
-use crate::table::extent::{Extent, MOST_DIMS};
+use crate::table::extent::{Extent, MOST_DIMS, Site};
 
 /// Lattice terms that see the same dimensions, ready for sweeps.
 #[derive(Clone, Debug)]
@@ -144,6 +144,24 @@ impl Pairs {
             let of_row = self.taps[taps.clone()].iter();
             of_row.map(move |&RowTap { dx, weight }| Tap { dt, dy, dx, weight: weight.into() })
         })
+    }
+
+    /// Visits the sites that filters hold together with a site, itself among them, and how strongly.
+    pub(super) fn for_each_neighbour(&self, extent: &Extent, site: usize, mut visit: impl FnMut(usize, f32)) {
+        // Offsets are at most half as long as an axis.
+        let wrap = |at: usize, by: i32, len: usize| {
+            let sum = at as i64 + i64::from(by);
+            let sum = if sum < 0 { sum + len as i64 } else { sum };
+            if sum < len as i64 { sum as usize } else { sum as usize - len }
+        };
+        let Site { frame, y, x } = extent.site(site);
+        for &Span { dt, dy, ref taps } in &self.spans {
+            let frame = wrap(frame, dt, extent.frames);
+            let row = (frame * extent.height + wrap(y, dy, extent.height)) * extent.width;
+            for &RowTap { dx, weight } in &self.taps[taps.clone()] {
+                visit(row + wrap(x, dx, extent.width), weight);
+            }
+        }
     }
 
     /// Adds `factor` times the pull on the samples of some runs, at most [`BLOCK`], to `pulls`, for each run

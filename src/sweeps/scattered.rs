@@ -35,7 +35,8 @@ pub(super) struct Scattered {
 struct Neighbours {
     /// Where the list of each place begins, and the end of the last.
     starts: Vec<usize>,
-    places: Vec<u32>,
+    /// Where the first coordinate that the term sees of each neighbour's first sample is.
+    offsets: Vec<u32>,
     weights: Vec<f32>,
     /// Sum of the weights of each place, over all samples of its neighbours.
     totals: Vec<f32>,
@@ -46,8 +47,8 @@ struct Neighbours {
 /// The place of no site.
 const NOWHERE: u32 = u32::MAX;
 
-/// What a listed pair costs, in pairs of tiles: its coordinates are gathered one by one.
-const LISTED_COST: f64 = 8.0;
+/// What a listed pair costs, in pairs of tiles, 5 to 13: its coordinates are gathered one by one.
+const LISTED_COST: f64 = 11.0;
 
 /// Samples whose lists are counted before all are.
 const PROBES: usize = 256;
@@ -79,15 +80,21 @@ impl Scattered {
         let step = sites.len().div_ceil(PROBES);
         let probed: Vec<u32> = sites.iter().copied().step_by(step).filter(somewhere).collect();
         let held = |pairs: &Pairs| {
-            let held = probed.iter().map(|&site| neighbours(pairs, &extent, &places, site).count());
-            held.sum::<usize>() as f64 / probed.len().max(1) as f64
+            let mut held = 0;
+            for &site in &probed {
+                let count = |other: usize, _| held += usize::from(places[other] != NOWHERE);
+                pairs.for_each_neighbour(&extent, site as usize, count);
+            }
+            held as f64 / probed.len().max(1) as f64
         };
         let samples = (sites.iter().filter(|site| somewhere(site)).count() * spp) as f64;
         let listed = terms.iter().map(held).sum::<f64>() * samples * spp as f64;
         if LISTED_COST * listed >= pairs {
             return None;
         }
-        let neighbours = terms.iter().map(|pairs| Neighbours::new(pairs, &extent, &sites, &places)).collect();
+        let stride = (spp * dims) as u32;
+        let neighbours = terms.iter().map(|pairs| Neighbours::new(pairs, &extent, &sites, &places, stride));
+        let neighbours = neighbours.collect();
         let points = vec![0.0; sites.len() * spp * dims];
         Some(Self { sites, frames, spp, dims, points, neighbours })
     }
@@ -113,7 +120,7 @@ impl Scattered {
 
     /// Listed pairs of samples, in pairs of tiles.
     pub(super) fn pairs(&self) -> f64 {
-        let listed: usize = self.neighbours.iter().map(|neighbours| neighbours.places.len()).sum();
+        let listed: usize = self.neighbours.iter().map(|neighbours| neighbours.offsets.len()).sum();
         LISTED_COST * (listed * self.spp * self.spp) as f64
     }
 
@@ -185,25 +192,28 @@ impl Scattered {
 }
 
 impl Neighbours {
-    fn new(pairs: &Pairs, extent: &Extent, sites: &[u32], places: &[u32]) -> Self {
+    /// The values of a place are `stride` numbers.
+    fn new(pairs: &Pairs, extent: &Extent, sites: &[u32], places: &[u32], stride: u32) -> Self {
         let mut lists = Self {
             starts: vec![0],
-            places: Vec::new(),
+            offsets: Vec::new(),
             weights: Vec::new(),
             totals: Vec::new(),
             steps: Vec::new(),
         };
         for &site in sites {
-            let begin = lists.places.len();
+            let begin = lists.offsets.len();
             if site != NOWHERE {
-                for (place, weight) in neighbours(pairs, extent, places, site) {
-                    lists.places.push(place);
-                    lists.weights.push(weight);
-                }
+                pairs.for_each_neighbour(extent, site as usize, |other, weight| {
+                    if places[other] != NOWHERE {
+                        lists.offsets.push(places[other] * stride + pairs.dims[0] as u32);
+                        lists.weights.push(weight);
+                    }
+                });
             }
             let weights = &lists.weights[begin..];
             let total = weights.iter().sum::<f32>() * extent.spp as f32;
-            lists.starts.push(lists.places.len());
+            lists.starts.push(lists.offsets.len());
             lists.totals.push(total);
             lists.steps.push(pairs.natural_step_of(total.into()) as f32);
         }
@@ -213,16 +223,6 @@ impl Neighbours {
     fn list(&self, place: usize) -> Range<usize> {
         self.starts[place]..self.starts[place + 1]
     }
-}
-
-/// Places of the demanded sites that filters hold together with a site, itself among them, and how strongly.
-fn neighbours(pairs: &Pairs, extent: &Extent, places: &[u32], site: u32) -> impl Iterator<Item = (u32, f32)> {
-    let at = extent.site(site as usize);
-    let tapped = pairs.taps().map(move |tap| {
-        let offset = (tap.dt.into(), tap.dy.into(), tap.dx.into());
-        (places[extent.site_index(extent.wrapped(at, offset))], tap.weight as f32)
-    });
-    tapped.filter(|&(place, _)| place != NOWHERE)
 }
 
 /// The pulls on up to sixteen samples, compiled once per instruction set.
@@ -270,6 +270,7 @@ impl Scattered {
         let zero = [[0.0; LANES]; MOST];
         let (mut own, mut sums) = (zero, zero);
         let (mut totals, mut steps) = ([1.0; LANES], [0.0; LANES]);
+        let mut gathered = Gathered { others: [zero; ROWS], weights: [[0.0; LANES]; ROWS] };
         for (lane, &sample) in samples.iter().enumerate() {
             let place = sample as usize / self.spp;
             let values = &self.points[sample as usize * self.dims..];
@@ -279,7 +280,8 @@ impl Scattered {
                 around[k] = [values[dim]; LANES];
             }
             let list = neighbours.list(place);
-            let sum = self.seen(pairs, &around, &neighbours.places[list.clone()], &neighbours.weights[list]);
+            let list = (&neighbours.offsets[list.clone()], &neighbours.weights[list]);
+            let sum = self.seen(pairs, &around, list, &mut gathered);
             sums.iter_mut().zip(sum).for_each(|(sums, sum)| sums[lane] = sum);
             (totals[lane], steps[lane]) = (neighbours.totals[place], neighbours.steps[place]);
         }
@@ -300,36 +302,50 @@ impl Scattered {
         &self,
         pairs: &Pairs,
         own: &[Row; MOST],
-        places: &[u32],
-        weights: &[f32],
+        (offsets, weights): (&[u32], &[f32]),
+        gathered: &mut Gathered<MOST>,
     ) -> [f32; MOST] {
         let mut sums = [[0.0; LANES]; MOST];
-        // Gathered first and looked at later, because a vector cannot be loaded while its parts are on their
-        // way to memory.
-        let (mut others, mut heavy) = ([[[0.0; LANES]; MOST]; ROWS], [[0.0; LANES]; ROWS]);
+        let Gathered { others, weights: heavy } = gathered;
         let dims = pairs.dims.len();
+        let mut steps = [0; MOST];
+        steps.iter_mut().zip(&pairs.dims).for_each(|(step, dim)| *step = dim.wrapping_sub(pairs.dims[0]));
+        // The common case by itself: one check for all coordinates of a sample.
+        let together = dims == MOST && steps.iter().enumerate().all(|(k, &step)| k == step);
         for sample in 0..self.spp {
-            for (places, weights) in places.chunks(ROWS * LANES).zip(weights.chunks(ROWS * LANES)) {
-                let rows = places.len().div_ceil(LANES);
+            let points = &self.points[sample * self.dims..];
+            for (offsets, weights) in offsets.chunks(ROWS * LANES).zip(weights.chunks(ROWS * LANES)) {
+                let rows = offsets.len().div_ceil(LANES);
                 // Lanes without a neighbour weigh nothing.
                 (others[rows - 1], heavy[rows - 1]) = (*own, [0.0; LANES]);
                 heavy.as_flattened_mut()[..weights.len()].copy_from_slice(weights);
-                for (places, others) in places.chunks(LANES).zip(&mut others) {
-                    for (lane, &place) in places.iter().enumerate() {
-                        let first = (place as usize * self.spp + sample) * self.dims;
-                        let values = &self.points[first..first + self.dims];
-                        for (k, &dim) in pairs.dims.iter().enumerate() {
-                            others[k][lane] = values[dim];
+                for (offsets, others) in offsets.chunks(LANES).zip(&mut *others) {
+                    for (lane, &offset) in offsets.iter().enumerate() {
+                        let values = &points[offset as usize..];
+                        if together && let Some(values) = values.first_chunk::<MOST>() {
+                            others.iter_mut().zip(values).for_each(|(others, value)| others[lane] = *value);
+                            continue;
+                        }
+                        for (others, &step) in others[..dims].iter_mut().zip(&steps) {
+                            // A dimension before the first one of the group is a step back.
+                            others[lane] = points[(offset as usize).wrapping_add(step)];
                         }
                     }
                 }
-                for (others, weights) in others[..rows].iter().zip(&heavy) {
+                for (others, weights) in others[..rows].iter().zip(&*heavy) {
                     pairs.push(dims, own, |k| others[k], weights, &mut sums);
                 }
             }
         }
         sums.map(simd::sum)
     }
+}
+
+/// Coordinates of neighbours, and their weights. They are gathered first and looked at later, because a vector
+/// cannot be loaded while its parts are on their way to memory.
+struct Gathered<const MOST: usize> {
+    others: [[Row; MOST]; ROWS],
+    weights: [Row; ROWS],
 }
 
 /// Vectors of neighbours that are gathered together.
