@@ -68,9 +68,10 @@
 //!   with SGD, thirteen with Adam; nine in sweeps), plus a few MiB per thread. Slices keep 4 bytes per pixel
 //!   and descended term besides, and 64 bytes per pixel where a table has one dimension. Sweeps work on a
 //!   copy that has margins as wide as filters reach, which counts in small tiles: 1.2 times a table of
-//!   512×512 pixels, 3 times one of 64×64, 9 times one of 24×24, 30 times one of 4×4. A target other than the
-//!   cube is tabulated once, in up to 17 MiB, or 50 where thousands of a picture's pixels stand out by a part
-//!   of a point. Planning a picture takes less than the picture itself, and some 50 MiB.
+//!   512×512 pixels, 3 times one of 64×64, 9 times one of 24×24, 30 times one of 4×4. Where a demand is
+//!   scattered, sweeps list its pairs, in up to sixteen times the table. A target other than the cube is
+//!   tabulated once, in up to 17 MiB, or 50 where thousands of a picture's pixels stand out by a part of a
+//!   point. Planning a picture takes less than the picture itself, and some 50 MiB.
 //! * Bad input is refused with a typed error ([`ConfigError`], [`TableError`], [`MeasureError`]) before
 //!   anything is computed or written. The library prints nothing.
 //!

@@ -50,6 +50,9 @@ const NOWHERE: u32 = u32::MAX;
 /// What a listed pair costs, in pairs of tiles, 5 to 13: its coordinates are gathered one by one.
 const LISTED_COST: f64 = 11.0;
 
+/// Memory of the lists, in tables; longer ones also leave the caches.
+const MOST_TABLES: f64 = 16.0;
+
 /// Samples whose lists are counted before all are.
 const PROBES: usize = 256;
 
@@ -57,8 +60,8 @@ const PROBES: usize = 256;
 const WORTH_SHARING: f64 = 8192.0;
 
 impl Scattered {
-    /// Lists the neighbours of what is demanded, where that costs less than `pairs` of tiles; `None` where it
-    /// doesn't.
+    /// Lists the neighbours of what is demanded, where that costs less than `pairs` of tiles, and not too
+    /// much memory; `None` where it doesn't.
     pub(super) fn new(objective: &Objective, terms: &[Pairs], pairs: f64) -> Option<Self> {
         let Objective { extent, dims, ref wanted, .. } = *objective;
         if !wanted.is_partial() {
@@ -88,8 +91,10 @@ impl Scattered {
             held as f64 / probed.len().max(1) as f64
         };
         let samples = (sites.iter().filter(|site| somewhere(site)).count() * spp) as f64;
-        let listed = terms.iter().map(held).sum::<f64>() * samples * spp as f64;
-        if LISTED_COST * listed >= pairs {
+        let held = terms.iter().map(held).sum::<f64>();
+        let bytes = held * samples / spp as f64 * (size_of::<u32>() + size_of::<f32>()) as f64;
+        let table = (extent.samples() * dims * size_of::<f32>()) as f64;
+        if LISTED_COST * held * samples * spp as f64 >= pairs || bytes > MOST_TABLES * table {
             return None;
         }
         let stride = (spp * dims) as u32;
@@ -341,8 +346,8 @@ impl Scattered {
     }
 }
 
-/// Coordinates of neighbours, and their weights. They are gathered first and looked at later, because a vector
-/// cannot be loaded while its parts are on their way to memory.
+/// Coordinates of neighbours, and their weights. They are gathered first and looked at later, because a
+/// vector cannot be loaded while its parts are on their way to memory.
 struct Gathered<const MOST: usize> {
     others: [[Row; MOST]; ROWS],
     weights: [Row; ROWS],
