@@ -3,7 +3,7 @@
 
 use std::ops::ControlFlow;
 
-use fsot::classes::PrefixLengths;
+use fsot::classes::{Demand, PrefixLengths};
 use fsot::config::{Descent, EndReason, LabelSubsets, Role, Work};
 use fsot::objective::ValueAndGradient;
 use fsot::optimizer::{SliceStep, StepReport};
@@ -112,6 +112,38 @@ fn threads_do_not_change_a_bit() {
                 assert_eq!(one.value.to_bits(), other.value.to_bits());
                 assert_eq!(one.ratio_standard_error.to_bits(), other.ratio_standard_error.to_bits());
             }
+        }
+    }
+}
+
+/// Scattered samples are swept by lists, and one-dimensional subsets transported sixteen abreast.
+#[test]
+fn threads_do_not_change_a_bit_of_what_is_demanded_here_and_there() {
+    for (dims, group, shape) in [(2, vec![0, 1], [1, 96, 96, 2]), (3, vec![2], [3, 64, 64, 1])] {
+        let config = config(shape, dims, Descent::barycentric(), 3);
+        let [frames, height, width, _] = shape;
+        let noise = SampleTable::white_noise(Extent { frames, height, width, spp: 1 }, 1, 9).unwrap();
+        let flags: Vec<bool> = noise.values().iter().map(|&value| value < 0.08).collect();
+        let demand = Demand::new([frames, height, width], flags.clone(), vec![group.clone()]).unwrap();
+        let run = |threads| {
+            with_threads(threads, || {
+                let mut optimizer = Optimizer::for_demand(config.clone(), &demand).unwrap();
+                let work = Work { slices_per_class: 64, sweeps: 3, ..Work::default() };
+                optimizer.run(Until::Work(work)).unwrap();
+                optimizer.into_table()
+            })
+        };
+        let alone = run(1);
+        for threads in [2, 3, 8] {
+            assert!(bits(&run(threads)) == bits(&alone), "{threads} threads, {shape:?}");
+        }
+        // What is not demanded keeps its bits, also the dimensions that nobody asked for.
+        let before = optimizer(&config).table();
+        let pairs = before.values().iter().zip(alone.values()).enumerate();
+        let per_site = shape[3] * dims;
+        for (index, (before, after)) in pairs {
+            let is_demanded = flags[index / per_site] && group.contains(&(index % dims));
+            assert_eq!(before.to_bits() != after.to_bits(), is_demanded, "{shape:?} {index}");
         }
     }
 }
