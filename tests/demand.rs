@@ -84,6 +84,29 @@ fn the_work_shrinks_with_the_demand() {
     assert!(some / all < 0.24, "{}", some / all);
 }
 
+/// Draws whose level selects no demanded sample are left out, and one dimension has a slice where two have
+/// sixteen.
+#[test]
+fn slices_that_say_nothing_are_not_drawn() {
+    let extent = Extent { frames: 1, height: 64, width: 64, spp: 1 };
+    let config = Config::new(extent, 2);
+    let noise = SampleTable::white_noise(extent, 1, 5).unwrap();
+    let some: Vec<bool> = noise.values().iter().map(|&value| value < 0.01).collect();
+    let count = |objective: Objective| {
+        (0..16).map(|step| objective.draw(3, step, Role::Descend).len()).sum::<usize>() as f64
+    };
+    let of = |pixels, groups| {
+        let demand = Demand::new([1, 64, 64], pixels, groups).unwrap();
+        count(Objective::for_demand(&config, &demand).unwrap())
+    };
+    let all = count(Objective::new(&config).unwrap());
+    // A pixel in a hundred, and classes of 14 in the mean: seven of eight levels lie above what is demanded.
+    let scattered = of(some, vec![vec![0, 1]]) / all;
+    assert!((0.05..0.2).contains(&scattered), "{scattered}");
+    let one = of(vec![true; 4096], vec![vec![1]]) / all;
+    assert!((one - 1.0 / 16.0).abs() < 0.005, "{one}");
+}
+
 /// Samples that are not demanded no longer take part, so the demanded ones can only gain.
 #[test]
 fn demanded_pixels_are_as_good_as_in_a_full_run() {

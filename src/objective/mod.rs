@@ -130,7 +130,8 @@ impl Objective {
     /// demanded samples alone, whose errors are the only ones that a filter sees; terms lose the dimensions
     /// that are not demanded, and classes without a demanded sample are never drawn. Those that are left are
     /// drawn as often as in a run for the whole table; where one dimension is left of a group, a draw has one
-    /// slice, and all its directions are the same. The cost is in proportion to what is left.
+    /// slice, since all its directions are the same. What is left out costs nothing; visiting the classes of
+    /// samples that lie here and there costs somewhat more than their share.
     ///
     /// # Errors
     /// As [`Objective::new`]; a demand for dimensions that the table does not have; a demand for nothing.

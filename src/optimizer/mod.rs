@@ -109,7 +109,8 @@ impl Optimizer {
     /// Starts from white noise and optimises only what a renderer will consume: see
     /// [`Objective::for_demand`].
     ///
-    /// Everything else keeps its bits. The cost is in proportion to the demand.
+    /// Everything else keeps its bits. The less is demanded, the less it costs: docs/results.md says how
+    /// much.
     ///
     /// # Errors
     /// Whatever [`Objective::for_demand`] refuses, and descent parameters outside their ranges.
