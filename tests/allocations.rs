@@ -1,11 +1,12 @@
 //! Steps work in buffers that the first ones have made, and those are few.
 
 use allocation_counter::measure;
+use fsot::classes::Demand;
 use fsot::config::{Role, Work};
 use fsot::kernel::Kernel;
 #[cfg(feature = "image")]
 use fsot::targets::{Density, Inks, PictureOptions, Tone};
-use fsot::{Config, Extent, Objective, Optimizer, Until};
+use fsot::{Config, Extent, Objective, Optimizer, SampleTable, Until};
 
 /// Allocations of 64 steps and 4 sweeps, after 64 times as many have grown the buffers to the largest
 /// subsets.
@@ -100,6 +101,29 @@ fn memory_follows_its_law() {
             println!("{case}: {of_table:.1} times the table, {of_law:.2} of the law");
             assert!(of_law < 1.0, "{case}: {of_table:.1} times the table, {of_law:.2} of the law");
         }
+    }
+}
+
+/// Lists of the neighbours of scattered samples take sixteen tables at most, and tiles are made instead where
+/// they would take more (the last of these).
+#[test]
+fn lists_of_neighbours_are_bounded() {
+    let extent = Extent { frames: 4, height: 160, width: 160, spp: 1 };
+    let table = (extent.samples() * 2 * size_of::<f32>()) as f64;
+    let noise = SampleTable::white_noise(extent, 1, 5).unwrap();
+    for share in [0.02, 0.1, 0.13, 0.3] {
+        let pixels = noise.values().iter().map(|&value| value < share).collect();
+        let demand = Demand::new([4, 160, 160], pixels, vec![vec![0, 1]]).unwrap();
+        let peak = one_thread().install(|| {
+            measure(|| {
+                let mut optimizer = Optimizer::for_demand(Config::new(extent, 2), &demand).unwrap();
+                optimizer.run(Until::Sweeps(1)).unwrap();
+            })
+            .bytes_max
+        });
+        let multiple = (peak as f64 - 4e6) / table;
+        println!("{share}: {multiple:.1} times the table and 4 MB");
+        assert!(multiple < 9.0 + 16.0, "{share}: {multiple:.1} times the table and 4 MB");
     }
 }
 
