@@ -1,6 +1,7 @@
 //! Blocks of consecutive sites of equal length: the whole table, its frames, its pixels.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::demand::Wanted;
 use super::family::Filters;
@@ -36,7 +37,7 @@ impl Filters for Blocks {
         self.sites == 1 && self.extent.sites() > 1
     }
 
-    fn visited(&self) -> Option<Vec<u32>> {
+    fn visited(&self) -> Option<Arc<[u32]>> {
         self.wanted.holding(self.members(), |site, holds| holds[site / self.sites] = true)
     }
 

@@ -165,11 +165,11 @@ impl Wanted {
 
     /// The classes among `members` that hold a demanded site, unless all sites are; `mark(site, holds)` flags
     /// those that hold the site.
-    pub(super) fn holding(&self, members: usize, mark: impl Fn(usize, &mut [bool])) -> Option<Vec<u32>> {
+    pub(super) fn holding(&self, members: usize, mark: impl Fn(usize, &mut [bool])) -> Option<Arc<[u32]>> {
         let Wanted::Some(wanted) = self else { return None };
         let mut holds = vec![false; members];
         wanted.sites.iter().for_each(|&site| mark(site as usize, &mut holds));
-        Some(marked(&holds))
+        Some(marked(&holds).into())
     }
 
     /// Mean size of the visited classes, if it is `mean_size` over all `members` where all is demanded: every

@@ -34,7 +34,7 @@ pub(crate) trait Filters: Debug + Send + Sync {
     }
 
     /// The classes that hold a demanded sample, where some don't.
-    fn visited(&self) -> Option<Vec<u32>>;
+    fn visited(&self) -> Option<Arc<[u32]>>;
 
     /// Samples that a random level of a visited class selects, in the mean; the weighted form counts its
     /// support.
@@ -121,7 +121,7 @@ impl FilterFamily {
             }
             Classes::Custom(classes) => Arc::new(Listed::custom(classes, extent, &wanted)?),
         };
-        let (visited, mean_size) = (filters.visited().map(Arc::from), filters.mean_size());
+        let (visited, mean_size) = (filters.visited(), filters.mean_size());
         Ok(Self { filters, visited, mean_size })
     }
 

@@ -1,5 +1,7 @@
 //! Families whose classes are written out, sample by sample: labels, ramps, and the caller's own.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use super::CustomClasses;
@@ -218,10 +220,10 @@ impl Filters for Listed {
         self.emphases[member]
     }
 
-    fn visited(&self) -> Option<Vec<u32>> {
+    fn visited(&self) -> Option<Arc<[u32]>> {
         let holding = |&member: &u32| !self.list(member as usize).is_empty();
         let visited: Vec<u32> = (0..self.members() as u32).filter(holding).collect();
-        (visited.len() < self.members()).then_some(visited)
+        (visited.len() < self.members()).then(|| visited.into())
     }
 
     fn mean_size(&self) -> f64 {
@@ -283,7 +285,7 @@ mod tests {
         let listed = Listed::labelled(&labels, &subsets, EXTENT, &Wanted::All).unwrap();
         assert_eq!(listed.above(0, 0.9), [0, 2, 5]);
         assert_eq!(listed.above(1, 0.0), [1, 3, 4]);
-        assert_eq!(listed.visited(), Some(vec![0, 1]));
+        assert_eq!(listed.visited(), Some([0, 1].into()));
         assert_eq!((listed.sizes(), listed.mean_size()), (vec![3], 3.0));
     }
 
@@ -303,6 +305,6 @@ mod tests {
         let flags = Wanted::new(&[true, false, false, true, false, false]);
         let listed = Listed::labelled(&[0, 0, 1, 1, 2, 2], &[set(&[0]), set(&[2])], EXTENT, &flags).unwrap();
         assert_eq!(listed.above(0, 0.0), [0]);
-        assert_eq!(listed.visited(), Some(vec![0]));
+        assert_eq!(listed.visited(), Some([0].into()));
     }
 }

@@ -1,5 +1,7 @@
 //! One class per pixel and frame: a kernel centred there.
 
+use std::sync::Arc;
+
 use super::FilterForm;
 use super::demand::{Wanted, marked};
 use super::family::Filters;
@@ -17,6 +19,8 @@ pub(super) struct Pixels {
     form: FilterForm,
     extent: Extent,
     wanted: Wanted,
+    /// The classes that hold a demanded sample, where some may not.
+    visited: Option<Arc<[u32]>>,
     /// Where some samples are not demanded, the place among the taps of the first one of each class that is:
     /// what it is at least, where that is [`reach::FARTHEST`] or more.
     firsts: Vec<u8>,
@@ -37,12 +41,15 @@ impl Pixels {
                 FilterForm::LevelSets => taps.iter().map(|tap| tap.weight).sum::<f64>(),
             };
         let offsets = taps.iter().map(offset).collect();
-        let mut pixels = Self { taps, offsets, form, extent, wanted, firsts: Vec::new(), mean_size };
-        if let (FilterForm::LevelSets, Some(flags)) = (form, pixels.wanted.flags()) {
-            pixels.firsts = reach::first_taps(&pixels.taps, &extent, flags);
-        }
-        if let Some(visited) = pixels.visited() {
-            pixels.mean_size = pixels.wanted.mean_size(pixels.mean_size, pixels.members(), visited.len());
+        let mut pixels =
+            Self { taps, offsets, form, extent, wanted, visited: None, firsts: Vec::new(), mean_size };
+        if let Some(flags) = pixels.wanted.flags() {
+            if form == FilterForm::LevelSets {
+                pixels.firsts = reach::first_taps(&pixels.taps, &extent, flags);
+            }
+            let visited = marked(&reach::holders(&pixels.taps, &extent, flags));
+            pixels.mean_size = pixels.wanted.mean_size(mean_size, pixels.members(), visited.len());
+            pixels.visited = Some(visited.into());
         }
         pixels
     }
@@ -81,9 +88,8 @@ impl Filters for Pixels {
         self.form == FilterForm::LevelSets
     }
 
-    fn visited(&self) -> Option<Vec<u32>> {
-        let flags = self.wanted.flags()?;
-        Some(marked(&reach::holders(&self.taps, &self.extent, flags)))
+    fn visited(&self) -> Option<Arc<[u32]>> {
+        self.visited.clone()
     }
 
     fn mean_size(&self) -> f64 {

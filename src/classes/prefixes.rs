@@ -1,5 +1,7 @@
 //! Prefixes: the first samples of a table or of each of its pixels.
 
+use std::sync::Arc;
+
 use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
@@ -130,7 +132,7 @@ impl Prefixes {
             return (sizes.sum::<f64>() / count, masses.sum::<f64>() / count);
         };
         let (mut sizes, mut masses) = (0, 0.0);
-        for &member in &visited {
+        for &member in &*visited {
             let size = self.demanded(member as usize).count();
             sizes += size;
             masses += self.emphasis(member as usize) * size as f64;
@@ -175,7 +177,7 @@ impl Filters for Prefixes {
         self.of(member).1.weight
     }
 
-    fn visited(&self) -> Option<Vec<u32>> {
+    fn visited(&self) -> Option<Arc<[u32]>> {
         self.wanted.holding(self.members(), |site, holds| self.mark(site, holds))
     }
 

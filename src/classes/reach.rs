@@ -31,9 +31,11 @@ pub(super) fn holders(taps: &[Tap], extent: &Extent, flags: &[bool]) -> Vec<bool
             let begin = extent.site_index(class);
             let len = ((last - first) as usize + 1).min(width);
             let shift = first.rem_euclid(width as i32) as usize;
-            for (x, holds) in holds[begin..begin + width].iter_mut().enumerate() {
-                let start = if x + shift < width { x + shift } else { x + shift - width };
-                *holds |= counts[start + len] > counts[start];
+            let (direct, wrapped) = holds[begin..begin + width].split_at_mut(width - shift);
+            // Two loops, each of which the compiler turns into vectors.
+            for (holds, start) in [(direct, shift), (wrapped, 0)] {
+                let ends = counts[start..].iter().zip(&counts[start + len..]);
+                holds.iter_mut().zip(ends).for_each(|(holds, (before, after))| *holds |= after > before);
             }
         }
     }
