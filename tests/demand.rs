@@ -2,7 +2,7 @@
 //! shrinks with the demand.
 
 use fsot::classes::Demand;
-use fsot::config::{Domain, GroupError, Role};
+use fsot::config::{Domain, GroupError, Role, Work};
 use fsot::{Config, ConfigError, Extent, Objective, Optimizer, SampleTable, Site, Until, metrics};
 
 const EXTENT: Extent = Extent { frames: 2, height: 24, width: 40, spp: 2 };
@@ -146,6 +146,26 @@ fn demands_that_cannot_be_met_are_named() {
     let problem = GroupError::NoSuchDimension { dimension: 2, dims: 2 };
     let missing = ConfigError::DemandGroup { group: 1, problem };
     assert_eq!(refused(true, vec![vec![0], vec![1, 2]]), missing);
+}
+
+/// Dimensions of an animation that nobody asked for keep their bits in any run: it does not begin with a
+/// frame that is made for all of them.
+#[test]
+fn an_animation_keeps_the_dimensions_that_are_not_demanded() {
+    let extent = Extent::animation(4, 32, 32);
+    for (dims, group) in [(2, vec![0]), (5, vec![0, 1, 2, 4])] {
+        let config = Config::new(extent, dims);
+        let before = SampleTable::white_noise(extent, dims, config.seed).unwrap();
+        let demand = Demand::new([4, 32, 32], vec![true; 4096], vec![group.clone()]).unwrap();
+        for until in [Until::Sweeps(2), Until::Work(Work { frame_sweeps: 1, sweeps: 1, ..Work::default() })] {
+            let mut optimizer = Optimizer::for_demand(config.clone(), &demand).unwrap();
+            optimizer.run(until).unwrap();
+            let after = optimizer.into_table();
+            for (index, (old, new)) in before.values().iter().zip(after.values()).enumerate() {
+                assert_eq!(old.to_bits() == new.to_bits(), !group.contains(&(index % dims)), "{index}");
+            }
+        }
+    }
 }
 
 /// Some frames of an animation, also across its end: the others keep their bits, and these get better.

@@ -82,7 +82,8 @@ pub enum ConfigError {
     },
     /// A time in which nothing can be done.
     #[error(
-        "{} s are too short, since the least that can be done takes about {} s: ask for at least that",
+        "{} s are too short, since one sweep or step takes {} s at the least, and maybe many times as long: \
+         ask for a number of sweeps or slices",
         Short::from(seconds),
         Short::from(least)
     )]

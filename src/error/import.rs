@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::ExtentError;
+use super::{ExtentError, Short};
 
 /// Why a file of numbers cannot become a table, and with which options it could.
 ///
@@ -114,7 +114,8 @@ pub enum ImportError {
     Empty,
     /// A value is negative, not finite, or above 1 among fractions.
     #[error(
-        "value number {at} is {value}: bring all values into [0, 1], or make whole numbers from 0 of them"
+        "value number {at} is {}: bring all values into [0, 1], or make whole numbers from 0 of them",
+        Short::from(value)
     )]
     Value {
         /// Position in the file, from 0.
@@ -124,8 +125,9 @@ pub enum ImportError {
     },
     /// Whole numbers of which nobody says how many there could be.
     #[error(
-        "its values are whole numbers up to {greatest}, neither each as often as the others nor of the whole \
-         range of their type: give --levels {suggested}, or another number of levels"
+        "its values are whole numbers up to {}, neither each as often as the others nor of the whole \
+         range of their type: give --levels {suggested}, or another number of levels",
+        Short::from(greatest)
     )]
     Levels {
         /// The greatest value.
@@ -135,8 +137,9 @@ pub enum ImportError {
     },
     /// Levels are whole numbers below their number.
     #[error(
-        "value number {at} is {value}, and no whole number below {levels}: \
-         give more --levels, or none for fractions in [0, 1]"
+        "value number {at} is {}, and no whole number below {levels}: \
+         give more --levels, or none for fractions in [0, 1]",
+        Short::from(value)
     )]
     NoLevel {
         /// Position in the file, from 0.

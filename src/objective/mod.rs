@@ -233,6 +233,12 @@ impl Objective {
         self.terms.get(term)?.family.taps()
     }
 
+    /// Whether this is for all of a configuration's samples and dimensions, and not for a part of them.
+    pub(crate) fn is_whole(&self, config: &Config) -> bool {
+        let given = config.terms.iter().map(|term| &term.dims);
+        !self.wanted.is_partial() && given.eq(self.terms().map(|term| &term.dims))
+    }
+
     /// Whether a balance takes slices beside sweeps.
     pub(crate) fn has_balances_beside_sweeps(&self) -> bool {
         let mut balances = self.terms.iter().filter(|term| term.spec.role == Role::Balance);

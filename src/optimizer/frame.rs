@@ -15,7 +15,7 @@ impl Optimizer {
     /// An optimiser for one frame of this animation; `None` if it is none, if a part of it is not demanded,
     /// or if its terms say nothing of a single frame.
     pub(super) fn of_a_frame(&self) -> Result<Option<Optimizer>, ConfigError> {
-        let is_swept_whole = !self.objective.wanted.is_partial() && sweeps::check(&self.objective).is_ok();
+        let is_swept_whole = self.objective.is_whole(&self.config) && sweeps::check(&self.objective).is_ok();
         let Extent { frames, height, width, .. } = self.config.extent;
         if frames == 1 || height * width < FEWEST_PIXELS || !is_swept_whole {
             return Ok(None);

@@ -89,7 +89,9 @@ impl Target {
         match self {
             Target::Custom(custom) => custom.get().project(direction),
             _ if !sum.is_finite() => Projected::none(),
-            Target::Density(_) if sum > 0.0 && !(1e-100..=1e100).contains(&sum) => Projected::none(),
+            Target::Density(_) | Target::Densities(_) if sum > 0.0 && !(1e-100..=1e100).contains(&sum) => {
+                Projected::none()
+            }
             Target::UniformCube => Projected::of_cube(direction),
             Target::Density(_) | Target::Densities(_) => {
                 let mut laws = self.project_all(&[direction.to_vec()]);

@@ -4,11 +4,13 @@
 //! direction, one of the latter too many or too few moves the ranks of all points of the pixel by one. Inside
 //! that is nothing; but the point at the pixel's edge is drawn to the next one around, as far away as those
 //! are. So some of the points along a bright pixel's edge end up outside of it, by a few hundredths of its
-//! side.
+//! side. Where hundreds of bright pixels call for a few points each, slices leave many of their points
+//! between them, also farther away: those come after the nearest.
 
 use std::collections::HashMap;
 
 use super::density::Density;
+use crate::random::kronecker_steps;
 
 /// Points that a pixel must call for, to get points back.
 const LEAST: f64 = 1.0;
@@ -18,6 +20,15 @@ const CONTRAST: f64 = 8.0;
 /// the next has.
 const TOGETHER: usize = 2;
 
+/// Columns and rows that a point may lie from a bright pixel, one after the other: those beside it come
+/// first.
+const REACHES: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
+/// Pixels that all points together look at in one go, at most: some tenths of a second.
+const MOST_LOOKS: usize = 1 << 28;
+
+/// Times that points choose a pixel within one of these, at most.
+const MOST_ROUNDS: usize = 16;
+
 /// How many points pixels have and call for.
 struct Held<'a> {
     densities: &'a [Density],
@@ -26,6 +37,11 @@ struct Held<'a> {
     scale: f64,
     /// Points by pixel.
     counts: HashMap<usize, usize>,
+    /// Whole points that each pixel should have that calls for [`LEAST`] or more. They are rounded so that
+    /// their sums are right, not each by itself: hundreds of pixels may call for six points and a bit.
+    wanted: HashMap<usize, f64>,
+    /// Most points that a pixel calls for.
+    brightest: f64,
 }
 
 /// A point beside a bright pixel.
@@ -43,21 +59,55 @@ pub(super) fn settle(densities: &[Density], points: &mut [[f32; 2]]) {
     let Some(size) = densities.first().map(Density::size) else { return };
     let mass: f64 = densities.iter().map(Density::mass).sum();
     let scale = points.len() as f64 / mass;
-    let mut held = Held { densities, size, scale, counts: HashMap::new() };
+    let (counts, wanted) = (HashMap::new(), HashMap::new());
+    let mut held = Held { densities, size, scale, counts, wanted, brightest: 0.0 };
+    let mut sum = 0.0_f64;
+    for pixel in 0..size[0] * size[1] {
+        let expected = held.expected(pixel);
+        held.brightest = held.brightest.max(expected);
+        if expected >= LEAST {
+            let before = sum.round();
+            sum += expected;
+            held.wanted.insert(pixel, sum.round() - before);
+        }
+    }
     points.iter().for_each(|&point| *held.counts.entry(pixel_of(point, size)).or_default() += 1);
-    let beside = (0..points.len()).filter_map(|point| held.beside(point, points[point]));
+    for reach in REACHES {
+        // Several points may have chosen the same pixel: those that it had no room for choose again.
+        let mut rounds = 0..MOST_ROUNDS;
+        while rounds.next().is_some() && settle_within(reach, &mut held, points) > 0 {}
+    }
+}
+
+/// The same for points in the pixels around a bright one, up to so many columns and rows from it. Returns how
+/// many it has moved.
+fn settle_within(reach: usize, held: &mut Held, points: &mut [[f32; 2]]) -> usize {
+    let mut count = 0;
+    let size = held.size;
+    let is_spare = |&point: &usize| held.is_spare(pixel_of(points[point], size));
+    let spare: Vec<usize> = (0..points.len()).filter(is_spare).collect();
+    if reach > 1 && spare.len().saturating_mul((2 * reach + 1).pow(2)) > MOST_LOOKS {
+        return 0;
+    }
+    let beside = spare.into_iter().filter_map(|point| held.beside(point, points[point], reach));
     let mut beside: Vec<Beside> = beside.collect();
     beside.sort_unstable_by(|a, b| a.distance.total_cmp(&b.distance).then(a.point.cmp(&b.point)));
     for Beside { point, from, to, .. } in beside {
         if held.is_free(from, to) {
-            let moved = inside(points[point], to, size, held.expected(to));
+            let moved = match reach {
+                1 => inside(points[point], to, size, held.expected(to)),
+                // From farther away many come by the same corner.
+                _ => scattered(to, held.count(to), size),
+            };
             if pixel_of(moved, size) == to {
                 points[point] = moved;
                 held.counts.entry(from).and_modify(|count| *count -= 1);
                 *held.counts.entry(to).or_default() += 1;
+                count += 1;
             }
         }
     }
+    count
 }
 
 impl Held<'_> {
@@ -71,16 +121,28 @@ impl Held<'_> {
         self.counts.get(&pixel).copied().unwrap_or(0) as f64
     }
 
+    /// Points that a bright pixel has too few of, or too many.
+    fn lacking(&self, pixel: usize) -> f64 {
+        self.wanted.get(&pixel).map_or(0.0, |wanted| wanted - self.count(pixel))
+    }
+
     /// Points that a pixel must call for, to be bright beside another one.
     fn bright_beside(&self, pixel: usize) -> f64 {
         LEAST.max(CONTRAST * self.expected(pixel))
     }
 
-    /// The nearest bright pixel beside a point, if there is one.
-    fn beside(&self, point: usize, at: [f32; 2]) -> Option<Beside> {
+    /// Whether a pixel has a point that it does not call for, and is dark beside any other.
+    fn is_spare(&self, pixel: usize) -> bool {
+        self.count(pixel) - 0.5 >= self.expected(pixel) && self.bright_beside(pixel) <= self.brightest
+    }
+
+    /// The nearest bright pixel around a point that its own pixel doesn't call for, if there is one.
+    fn beside(&self, point: usize, at: [f32; 2], reach: usize) -> Option<Beside> {
         let from = pixel_of(at, self.size);
         let least = self.bright_beside(from);
-        let bright = around(from, 1, self.size).filter(|&to| self.expected(to) >= least);
+        let bright = around(from, reach, self.size).filter(|&to| self.expected(to) >= least);
+        // Farther away, only those that lack some by themselves.
+        let bright = bright.filter(|&to| reach == 1 || self.lacking(to) >= 1.0);
         let near = bright.map(|to| {
             let [x, y] = outside(at, to, self.size);
             Beside { point, from, to, distance: x.hypot(y) }
@@ -92,7 +154,7 @@ impl Held<'_> {
     fn is_free(&self, from: usize, to: usize) -> bool {
         let least = self.bright_beside(from);
         let bright = around(to, TOGETHER, self.size).filter(|&pixel| self.expected(pixel) >= least);
-        let lacking: f64 = bright.map(|pixel| self.expected(pixel) - self.count(pixel)).sum();
+        let lacking: f64 = bright.map(|pixel| self.lacking(pixel)).sum();
         lacking >= 0.5 && self.count(from) - 0.5 >= self.expected(from)
     }
 }
@@ -136,11 +198,21 @@ fn inside(point: [f32; 2], pixel: usize, size: [usize; 2], expected: f64) -> [f3
     })
 }
 
+/// The place of the `count`th point of a pixel, by the R2 sequence.
+fn scattered(pixel: usize, count: f64, [width, height]: [usize; 2]) -> [f32; 2] {
+    let steps = kronecker_steps(2);
+    let at = |index: usize, step: f64, len: usize| {
+        ((index as f64 + (0.5 + count * step).fract()) / len as f64) as f32
+    };
+    [at(pixel % width, steps[0], width), at(pixel / width, steps[1], height)]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// One pixel of 5 × 5 calls for 90 of 100 points and has 83; six lie beside it, and one farther.
+    /// One pixel of 5 × 5 calls for 90 of 100 points and has 83; six lie beside it, and one farther, which
+    /// comes last.
     #[test]
     fn a_bright_pixel_gets_back_what_lies_beside_it() {
         let mut values = vec![10.0 / 24.0; 25];
@@ -156,8 +228,8 @@ mod tests {
         settle(std::slice::from_ref(&density), &mut points);
         let inside =
             |points: &[[f32; 2]]| points.iter().filter(|&&point| pixel_of(point, [5, 5]) == 12).count();
-        assert_eq!((inside(&before), inside(&points)), (83, 89));
-        assert!(points[..83] == before[..83] && points[89..] == before[89..]);
+        assert_eq!((inside(&before), inside(&points)), (83, 90));
+        assert!(points[..83] == before[..83] && points[90..] == before[90..]);
         // At most half a distance deep, which is 1 / sqrt(90) pixels.
         assert!((points[83][0] * 5.0 - 2.0 - 0.5 / 90.0_f32.sqrt()).abs() < 1e-5, "{:?}", points[83]);
 

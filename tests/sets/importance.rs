@@ -57,6 +57,28 @@ fn a_bright_pixel_has_its_share_at_any_size_of_the_picture() {
     }
 }
 
+/// Thousands of pixels that call for two points each, hundreds that call for six: slices alone leave 16 % and
+/// 10 % of the points between them.
+#[test]
+fn hundreds_of_bright_pixels_have_their_share() {
+    let size = [512, 256];
+    let noise = fsot::SampleTable::white_noise(fsot::Extent::still(256, 512), 1, 4).unwrap();
+    let is_lattice = |pixel: usize| (pixel % 512).is_multiple_of(8) && (pixel / 512).is_multiple_of(8);
+    let is_drawn = |pixel: usize| noise.values()[pixel] < 0.005;
+    for is_bright in [&is_lattice as &dyn Fn(usize) -> bool, &is_drawn] {
+        let values: Vec<f32> = (0..512 * 256).map(|pixel| if is_bright(pixel) { 1e4 } else { 1.0 }).collect();
+        let bright: f64 = values.iter().filter(|&&value| value > 1.0).map(|&value| f64::from(value)).sum();
+        let density = Density::new(size[0], size[1], values).unwrap();
+        let share = bright / density.mass();
+        let points = optimised(Config::stippling(4096, density), 2000);
+        let at = |value: f64, len: usize| (value * len as f64) as usize;
+        let pixels = points.chunks_exact(2).map(|point| at(point[1], 256) * 512 + at(point[0], 512));
+        let found = pixels.filter(|&pixel| is_bright(pixel)).count() as f64 / 4096.0;
+        // Points that find no pixel that lacks any within 64 pixels stay where they are.
+        assert!((found - share).abs() < 0.01, "{found} of {share}");
+    }
+}
+
 #[test]
 fn several_bright_pixels_lines_and_a_sky_have_their_shares() {
     let (size, count) = ([512, 256], 8192);
