@@ -37,9 +37,10 @@ pub struct ImportOptions {
     ///
     /// If neither they nor lengths are given: five axes are those of a table, in front of which axes of
     /// length 1 are dropped; four are `frame, y, x, dim`, or `y, x, sample, dim` if only the first two are
-    /// equal; three are `y, x, dim` if the last is at most 16 long, else `frame, y, x`, or `y, x, frame` if
-    /// only the first two are equal; two are `y, x`, or a list of samples if the last is at most 16 long; one
-    /// is a list of scalars. Lists are square pictures, row by row.
+    /// equal; three are `y, x, dim` if the last is at most 16 long and not all are equal, else `frame, y, x`,
+    /// or `y, x, frame` if only the first two are equal; two are `y, x` if they are equal or the last is
+    /// longer than 16, else a list of samples; one is a list of scalars. Lists are square pictures, row by
+    /// row.
     pub axes: Vec<Axis>,
     /// Of how many levels the values are, `0..levels`; a value `v` becomes `(v + ½) / levels`.
     ///

@@ -143,8 +143,11 @@ fn usual(shape: &[usize]) -> Result<Vec<Axis>, ImportError> {
     use Axis::{Dim, Frame, Sample, X, Y};
     Ok(match *shape {
         [] | [_] => vec![],
+        // A mask, however small.
+        [rows, columns] if rows == columns => vec![Y, X],
         [_, columns] if columns <= MOST_COLUMNS => vec![],
         [_, _] => vec![Y, X],
+        [first, second, last] if first == second && second == last => vec![Frame, Y, X],
         [_, _, last] if last <= MOST_COLUMNS => vec![Y, X, Dim],
         [first, second, last] if first == second && second != last => vec![Y, X, Frame],
         [_, _, _] => vec![Frame, Y, X],

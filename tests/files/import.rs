@@ -163,6 +163,19 @@ fn axes_go_where_their_names_say() {
     }
 }
 
+/// A mask of 4 × 4 ranks is 16 pixels, not four of four dimensions.
+#[test]
+fn small_squares_are_pictures() {
+    for side in [2, 4, 8, 9, 16] {
+        let ranks: Vec<u8> = (0..side * side).map(|rank| rank as u8).collect();
+        let table = import(&array("|u1", false, &[side, side], &ranks)).table;
+        assert_eq!(table.shape(), [1, side, side, 1, 1]);
+        let [first, last] = [table.values()[0], table.values()[side * side - 1]];
+        let half = 0.5 / (side * side) as f32;
+        assert!(first == half && (1.0 - last - half).abs() < f32::EPSILON, "{side}: {first} {last}");
+    }
+}
+
 #[test]
 fn a_table_in_fortran_order_is_the_same_table() {
     let table = SampleTable::white_noise(Extent { frames: 2, height: 3, width: 4, spp: 2 }, 3, 1).unwrap();
