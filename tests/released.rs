@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use fsot::classes::Classes;
 use fsot::metrics::{Bias, Bound, FaceDensity, FilteredError, Integrands, Marginal};
-use fsot::{Config, Objective, SampleTable};
+use fsot::{Config, Extent, Objective, SampleTable, Site};
 
 /// Filtered error, bound and bias, as ratios to white noise.
 struct Figures {
@@ -103,5 +103,41 @@ fn tables_are_even() {
             let is_even = |face: &FaceDensity| (face.density - 1.0).abs() < 1.0 / (face.within * samples);
             assert!(marginal.faces.iter().all(is_even), "{name}: {:?}", marginal.faces);
         }
+    }
+}
+
+/// How far samples of a frame are correlated with those some pixels away, as the README and
+/// `Extent::displacement` say: neighbours most, displaced uses hardly.
+#[test]
+fn displaced_uses_are_hardly_correlated() {
+    for (name, _) in recorded() {
+        let table = SampleTable::load(folder().join(&name).with_extension("npy")).unwrap();
+        let Extent { height, width, spp, .. } = table.extent();
+        let frame = Extent { frames: 1, ..table.extent() };
+        let correlation = |dy: usize, dx: usize| {
+            let product = |index: usize| -> f64 {
+                let site = frame.site(index / spp);
+                let there = Site { y: site.y + dy, x: site.x + dx, ..site };
+                let pairs = table.sample(site, index % spp).iter().zip(table.sample(there, index % spp));
+                pairs.map(|(here, there)| (f64::from(*here) - 0.5) * (f64::from(*there) - 0.5)).sum()
+            };
+            let products = frame.samples() * table.dims();
+            12.0 * (0..frame.samples()).map(product).sum::<f64>() / products as f64
+        };
+        let seven = (0..=height / 2)
+            .flat_map(|y| (0..width).map(move |x| (y, x)))
+            .filter(|&(y, x)| (6.5..7.5).contains(&(y as f64).hypot(x.min(width - x) as f64)));
+        let at_seven = seven.map(|(y, x)| correlation(y, x).abs()).fold(0.0, f64::max);
+        let uses = (1..36).map(|index| table.extent().displacement(index));
+        let displaced: Vec<f64> = uses.map(|by| correlation(by.y, by.x)).collect();
+        let largest = displaced.iter().map(|value| value.abs()).fold(0.0, f64::max);
+        let rms = (displaced.iter().map(|value| value * value).sum::<f64>() / 35.0).sqrt();
+        let beside = correlation(0, 1);
+        println!(
+            "{name}: {beside:.2} beside, {at_seven:.2} at 7 pixels; displaced {largest:.3}, rms {rms:.3}"
+        );
+        assert!(largest < 0.08 && rms < 0.05, "{name}");
+        // Several samples share the work of one.
+        assert!(spp > 1 || beside < -0.1 && largest < beside.abs(), "{name}");
     }
 }

@@ -21,8 +21,8 @@ pub(super) struct Pixels {
     wanted: Wanted,
     /// The classes that hold a demanded sample, where some may not.
     visited: Option<Arc<[u32]>>,
-    /// Where some samples are not demanded, the place among the taps of the first one of each class that is:
-    /// what it is at least, where that is [`reach::FARTHEST`] or more.
+    /// Where some samples are not demanded, the place among the taps of each class's first one that is, or
+    /// less: see [`reach::first_taps`].
     firsts: Vec<u8>,
     mean_size: f64,
 }

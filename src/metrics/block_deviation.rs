@@ -1,5 +1,9 @@
 //! Where a density holds too few or too many points for its mass.
 
+use std::fmt::{Display, Formatter};
+
+use serde::Serialize;
+
 use crate::error::TargetError;
 use crate::targets::Density;
 
@@ -24,7 +28,7 @@ use crate::targets::Density;
 /// assert!(worst.deviation < -9.0 && worst.points < 110, "{worst:?}");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct BlockDeviation {
     /// How far the number of points is from the share `p` of the mass, in units of the sampling error `sqrt(n
@@ -47,6 +51,18 @@ pub struct BlockDeviation {
     pub points: usize,
     /// Points that its mass calls for.
     pub expected: f64,
+}
+
+impl Display for BlockDeviation {
+    fn fmt(&self, out: &mut Formatter) -> std::fmt::Result {
+        let &Self { deviation, column, row, side, points, expected } = self;
+        write!(
+            out,
+            "{:.1} standard errors: {points} points for {expected:.1} in the {side} x {side} pixels from \
+             column {column}, row {row} on",
+            deviation.abs()
+        )
+    }
 }
 
 /// Points and mass of blocks of one size, row by row.

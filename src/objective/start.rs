@@ -55,8 +55,8 @@ impl Objective {
         }
     }
 
-    /// Brings points that an optimisation has left just beside a bright pixel of their density into it: each
-    /// by the smallest of its classes that have one.
+    /// Brings points that an optimisation has left beside or between bright pixels of their density into
+    /// those that lack some: each by the smallest of its classes that have one.
     pub(crate) fn settle(&self, points: &mut [f32]) {
         let has_pixels =
             |term: &&PlannedTerm| term.spec.role == Role::Descend && !term.spec.target.densities().is_empty();

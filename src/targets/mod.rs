@@ -123,7 +123,7 @@ impl Target {
         }
     }
 
-    /// Brings points that lie just beside a bright pixel of a density into it, as far as it lacks any.
+    /// Brings points that lie beside or between bright pixels of a density into those that lack some.
     pub(crate) fn settle(&self, points: &mut [[f32; 2]]) {
         settle::settle(self.densities(), points);
     }

@@ -1,4 +1,4 @@
-//! Bright pixels get back the points that lie just beside them.
+//! Bright pixels get back the points that lie beside and between them.
 //!
 //! Points in a bright pixel have neighbours a hundredth of a pixel away, those around it many pixels. Along a
 //! direction, one of the latter too many or too few moves the ranks of all points of the pixel by one. Inside

@@ -3,7 +3,7 @@
 
 use fsot::config::{Until, Work};
 use fsot::metrics::{Bias, FilteredError, Integrands, Marginal, Spectra};
-use fsot::{Config, Kernel, SampleTable, Site};
+use fsot::{Config, Kernel, SampleTable};
 
 use crate::extent;
 
@@ -128,32 +128,4 @@ fn animations_are_better_than_displaced_stills() {
     let [still, animated] = [&still, &animated].map(error);
     println!("{still:.4?} {animated:.4?}");
     assert!(animated[0] < 0.88 * still[0] && animated[1] < 1.15 * still[1], "{still:?} {animated:?}");
-}
-
-/// What a renderer takes from a displaced table is nearly independent of what it takes from the table itself;
-/// a shift by some pixels is not. Over 8192 products the standard error is .011.
-#[test]
-fn displaced_uses_are_uncorrelated() {
-    let table = swept([1, 64, 64, 1], 2, 100, 0);
-    let correlation = |dy: usize, dx: usize| {
-        let product = |site: usize| {
-            let site = table.extent().site(site);
-            let [here, there] = [site, Site { y: site.y + dy, x: site.x + dx, ..site }].map(|site| {
-                <[f32; 2]>::try_from(table.sample(site, 0)).unwrap().map(|value| f64::from(value) - 0.5)
-            });
-            here[0] * there[0] + here[1] * there[1]
-        };
-        12.0 * (0..4096).map(product).sum::<f64>() / 8192.0
-    };
-    assert!(correlation(0, 1) < -0.2 && correlation(1, 0) < -0.2);
-    let mut squares = 0.0;
-    for index in 1..36 {
-        let by = table.extent().displacement(index);
-        let found = correlation(by.y, by.x);
-        // What the documentation says; a neighbour has five times as much.
-        assert!(found.abs() < 0.08, "use {index}: {found}");
-        squares += found * found;
-    }
-    // Twice what chance leaves, and somewhat more.
-    assert!((squares / 35.0).sqrt() < 0.03, "{squares}");
 }

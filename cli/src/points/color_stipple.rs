@@ -125,7 +125,7 @@ impl Figures for InkLikenesses {
             let Likeness { points, correlation, strays, worst, advice, .. } = likeness;
             let points = console::points(*points);
             writeln!(out, "{ink}: {points}, correlation {correlation:.4}, strays {strays}")?;
-            writeln!(out, "  {worst}")?;
+            writeln!(out, "  largest deviation {worst}")?;
             advice.iter().try_for_each(|advice| writeln!(out, "  {advice}"))?;
         }
         Ok(())

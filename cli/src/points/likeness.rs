@@ -16,20 +16,9 @@ pub struct Likeness {
     /// Standard deviation of the blur, in units of the picture's longer side.
     pub blur: f64,
     /// The block of pixels whose number of points is the least likely for its mass.
-    pub worst: Worst,
+    pub worst: BlockDeviation,
     /// A word about a poor figure.
     pub advice: Option<&'static str>,
-}
-
-/// A block of pixels with the deviation of its number of points, in standard errors of random points.
-#[derive(Debug, Serialize)]
-pub struct Worst {
-    pub deviation: f64,
-    pub column: usize,
-    pub row: usize,
-    pub side: usize,
-    pub points: usize,
-    pub expected: f64,
 }
 
 /// Deviation beyond which mass was lost, where random points have 4 to 5.
@@ -61,26 +50,7 @@ impl Likeness {
             false => Some("the points follow the picture poorly: give more --slices"),
         };
         let DensityMatch { correlation, strays, worst, .. } = found;
-        Ok(Self { points: count, correlation, strays, blur, worst: worst.into(), advice })
-    }
-}
-
-impl From<BlockDeviation> for Worst {
-    fn from(worst: BlockDeviation) -> Self {
-        let BlockDeviation { deviation, column, row, side, points, expected, .. } = worst;
-        Self { deviation, column, row, side, points, expected }
-    }
-}
-
-impl std::fmt::Display for Worst {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { deviation, column, row, side, points, expected } = self;
-        write!(
-            formatter,
-            "largest deviation {:.1} standard errors: {points} points for {expected:.1} in the \
-             {side} x {side} pixels from column {column}, row {row} on",
-            deviation.abs()
-        )
+        Ok(Self { points: count, correlation, strays, blur, worst, advice })
     }
 }
 

@@ -90,7 +90,7 @@ impl Figures for Likeness {
     fn words(&self, out: &mut dyn Write) -> io::Result<()> {
         let Self { correlation, strays, blur, worst, advice, .. } = self;
         writeln!(out, "correlation {correlation:.4}, strays {strays}, blurred by {blur:.4}")?;
-        writeln!(out, "{worst}")?;
+        writeln!(out, "largest deviation {worst}")?;
         advice.iter().try_for_each(|advice| writeln!(out, "{advice}"))
     }
 }
