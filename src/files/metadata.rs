@@ -1,11 +1,13 @@
 //! What a table file does not say itself: how it was made and how good it is, in a `.json` beside it.
 
+use std::convert::Infallible;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use super::bytes::{hexadecimal, little_endian};
 use super::header::shortened;
 use crate::error::{FormatError, TableError};
 use crate::kernel::Tap;
@@ -135,6 +137,13 @@ pub struct RunRecord {
     /// Wall-clock time in seconds.
     #[serde(with = "number")]
     pub seconds: f64,
+    /// Number of the next step of slices, which names its random numbers: `from_table_with` goes on there.
+    /// `None` in files of before 2026-11-27.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub next_step: Option<u64>,
+    /// Number of the next sweep.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub next_sweep: Option<u64>,
 }
 
 impl Metadata {
@@ -249,18 +258,11 @@ impl Metadata {
 /// The hash of values as they lie in a file.
 pub(super) fn sha256(values: &[f32]) -> String {
     let mut hash = Sha256::new();
-    let mut block = [0; 1 << 12];
-    for values in values.chunks(block.len() / size_of::<f32>()) {
-        let bytes = &mut block[..size_of_val(values)];
-        bytes
-            .as_chunks_mut()
-            .0
-            .iter_mut()
-            .zip(values)
-            .for_each(|(bytes, value)| *bytes = value.to_le_bytes());
+    let Ok(()) = little_endian(values, |bytes| {
         hash.update(bytes);
-    }
-    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+        Ok::<_, Infallible>(())
+    });
+    hexadecimal(&hash.finalize())
 }
 
 /// Refuses paths beside which no metadata can lie: without a file name, or with the extension of metadata.

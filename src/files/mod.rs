@@ -1,6 +1,7 @@
 //! What lies on the disk: tables, their metadata, other people's files, and a writer whose files appear
 //! whole or not at all.
 
+mod bytes;
 mod dtype;
 mod header;
 mod import;
@@ -12,6 +13,7 @@ pub(crate) mod npy;
 mod text;
 mod whole;
 
+pub(crate) use self::bytes::{hexadecimal, little_endian};
 pub use self::import::{ImportOptions, Imported};
 pub use self::layout::Axis;
 pub use self::metadata::{BoundEstimate, BoundRecord, KernelTaps, Metadata, RunRecord};

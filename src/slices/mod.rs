@@ -26,7 +26,7 @@ use self::chunk::{Chunk, Scratch, Transport};
 pub(crate) use self::draw::Picked;
 use self::draw::{SubsetDraw, VisitOrder};
 use self::part::{Pull, TablePart};
-use self::walk::Walker;
+pub(crate) use self::walk::Walker;
 use crate::config::{Descent, Role};
 use crate::objective::Objective;
 
@@ -85,6 +85,16 @@ impl Slices {
         }
     }
 
+    /// The descent, with its moments.
+    pub(crate) fn walker(&self) -> &Walker {
+        &self.walker
+    }
+
+    /// Goes on with these moments.
+    pub(crate) fn set_walker(&mut self, walker: Walker) {
+        self.walker = walker;
+    }
+
     /// Gives buffers back: they are as large as the largest subset, and copies of the table.
     pub(crate) fn release(&mut self) {
         (self.orders, self.batches, self.workers) = (Vec::new(), Batches::default(), Workers::new());
@@ -107,7 +117,7 @@ impl Slices {
         let samples = points.len() / objective.dims;
 
         let Self { batches, pull, walker, .. } = self;
-        let table = TablePart { points, moments: walker.moments(), ..pull.part(objective.dims) };
+        let table = TablePart { points, moments: walker.moments_mut(), ..pull.part(objective.dims) };
         table.for_each(batches.samples_per_part(samples), &|mut part| {
             if let Some(walk) = walk {
                 batches.descended.add_up(objective, &mut part);

@@ -1,0 +1,71 @@
+//! The course of a run: how much of which work is done.
+
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+use crate::config::{Until, Work};
+
+/// A run on its way.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Course {
+    /// What it was planned for.
+    pub work: Work,
+    /// Steps taken: sweeps of the frame that an animation begins with, batches of slices, and parts of sweeps.
+    pub step: u64,
+    /// Slices drawn.
+    pub slices: u64,
+    /// Time of these steps.
+    pub spent: Duration,
+    /// What ends it earlier.
+    pub plateau: Option<Plateau>,
+}
+
+/// Mean squared displacement of this and the last window: see [`Until::Converged`].
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Plateau {
+    improvement: f64,
+    window: u64,
+    last: Option<f64>,
+    sum: f64,
+    steps: u64,
+    /// Whether a window brought less than that.
+    pub reached: bool,
+}
+
+impl Course {
+    /// At its beginning.
+    pub(super) fn new(work: Work, until: Until) -> Self {
+        let plateau = match until {
+            Until::Converged { improvement, window_steps, .. } => {
+                Some(Plateau::new(improvement, window_steps))
+            }
+            _ => None,
+        };
+        Self { work, step: 0, slices: 0, spent: Duration::ZERO, plateau }
+    }
+
+    pub(super) fn has_converged(&self) -> bool {
+        self.plateau.as_ref().is_some_and(|plateau| plateau.reached)
+    }
+}
+
+impl Plateau {
+    fn new(improvement: f64, window: u64) -> Self {
+        Self { improvement, window, last: None, sum: 0.0, steps: 0, reached: false }
+    }
+
+    /// Takes note of the mean squared displacement of a step.
+    pub(super) fn add(&mut self, squared: f64) {
+        self.sum += squared;
+        self.steps += 1;
+        if self.steps < self.window {
+            return;
+        }
+        let mean = self.sum / self.window as f64;
+        self.reached |= self.last.is_some_and(|last| mean > last * (1.0 - self.improvement));
+        (self.last, self.sum, self.steps) = (Some(mean), 0.0, 0);
+    }
+}
