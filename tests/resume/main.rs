@@ -1,6 +1,7 @@
 //! Runs that are resumed from a checkpoint end with the bits of runs that nothing has stopped.
 
 mod damage;
+mod kills;
 
 use std::ops::ControlFlow;
 
@@ -38,8 +39,10 @@ fn slices(slices_per_class: u64) -> Until {
     Until::SlicesPerClass(slices_per_class)
 }
 
-/// All engines, descents and kinds of classes, of a few hundred steps at most.
-fn kinds() -> Vec<Kind> {
+/// All engines, descents and kinds of classes, of a few hundred steps at most, or of so many times the work.
+fn kinds_of(times: u64) -> Vec<Kind> {
+    let slices = |slices_per_class: u64| slices(slices_per_class * times);
+    let sweeps = |sweeps: u64| Until::Sweeps(sweeps * times);
     let still = |dims| Config::new(Extent::still(24, 20), dims).with_seed(3);
     let film = Config::new(Extent { frames: 6, height: 16, width: 20, spp: 2 }, 2).with_seed(4);
     let ema = Kernel::gaussian(1.5).with_temporal(TemporalKernel::Ema { alpha: 0.2 });
@@ -58,8 +61,8 @@ fn kinds() -> Vec<Kind> {
         Kind::new("adam", still(2).with_descent(Descent::adam()), slices(96)),
         Kind::new("sgd", still(2).with_descent(Descent::sgd()), slices(96)),
         Kind::new("torus", still(3).with_domain(Domain::Torus), slices(48)),
-        Kind::new("sweeps", still(4), Until::Sweeps(5)),
-        Kind::new("scalar sweeps", still(1), Until::Sweeps(5)),
+        Kind::new("sweeps", still(4), sweeps(5)),
+        Kind::new("scalar sweeps", still(1), sweeps(5)),
         Kind::new("animation", film.clone().with_kernel(ema), work(4, 0, 3)),
         Kind::new("slices then sweeps", film.clone(), work(3, 16, 2)),
         Kind::new(
@@ -75,15 +78,19 @@ fn kinds() -> Vec<Kind> {
     let of_pixels = Term { classes: Classes::PerPixel, role: Role::Balance, ..balanced.terms[0].clone() };
     balanced.extent.spp = 4;
     balanced.terms.push(of_pixels);
-    kinds.push(Kind::new("balances beside sweeps", balanced, Until::Sweeps(4)));
-    kinds.push(Kind { demand: demand(&disc), ..Kind::new("disc in sweeps", still(4), Until::Sweeps(5)) });
+    kinds.push(Kind::new("balances beside sweeps", balanced, sweeps(4)));
+    kinds.push(Kind { demand: demand(&disc), ..Kind::new("disc in sweeps", still(4), sweeps(5)) });
     let here_and_there = |site: usize| (site * site + site / 7).is_multiple_of(11);
     kinds.push(Kind {
         demand: demand(&here_and_there),
-        ..Kind::new("scattered in sweeps", still(4), Until::Sweeps(5))
+        ..Kind::new("scattered in sweeps", still(4), sweeps(5))
     });
     kinds.push(Kind { demand: demand(&disc), ..Kind::new("disc in slices", still(4), slices(48)) });
     kinds
+}
+
+fn kinds() -> Vec<Kind> {
+    kinds_of(1)
 }
 
 /// Through the bytes of a file.
