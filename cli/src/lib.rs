@@ -22,15 +22,16 @@
 //!
 //! # Shared with other programs
 //!
-//! [`interrupt`] for signals, [`output`] for files that are checked before the work, [`progress`] for bars,
-//! [`console`] for what is printed, [`run`] for a run with all of them, [`draw`] for pages, [`temporal`] for
-//! kernels as they are written on a command line.
+//! [`interrupt`] for signals, [`checkpoint`] for runs that may be killed, [`output`] for files that are
+//! checked before the work, [`progress`] for bars, [`console`] for what is printed, [`run`] for a run with
+//! all of them, [`draw`] for pages, [`temporal`] for kernels as they are written on a command line.
 
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
 mod advice;
+pub mod checkpoint;
 pub mod console;
 pub mod draw;
 mod flags;

@@ -36,9 +36,9 @@ const HASH: usize = 32;
 ///
 /// # The file
 ///
-/// The line `fsot checkpoint 1`; the length of the header as a little-endian `u64`; the header, which is JSON;
-/// the coordinates and the moments of the descent as little-endian `f32`; the SHA-256 of all that. It takes 4
-/// bytes a coordinate, 8 with SGD, 12 with Adam.
+/// The line `fsot checkpoint 1`; the length of the header as a little-endian `u64`; the header, which is
+/// JSON; the coordinates and the moments of the descent as little-endian `f32`; the SHA-256 of all that. It
+/// takes 4 bytes a coordinate, 8 with SGD, 12 with Adam.
 ///
 /// ```
 /// use fsot::optimizer::Checkpoint;
@@ -172,8 +172,8 @@ impl Checkpoint {
     /// part of it.
     ///
     /// # Errors
-    /// [`CheckpointError::NoConfig`] where it is longer than a MiB of JSON, as with pictures and long lists of
-    /// labels, or names code.
+    /// [`CheckpointError::NoConfig`] where it is longer than a MiB of JSON, as with pictures and long lists
+    /// of labels, or names code.
     pub fn config(&self) -> Result<Config, CheckpointError> {
         let no_config = |reason: String| CheckpointError::NoConfig { reason };
         let too_long = || no_config(format!("it is longer than {MOST_CONFIGURATION} bytes"));

@@ -12,7 +12,8 @@ use crate::config::{Until, Work};
 pub(super) struct Course {
     /// What it was planned for.
     pub work: Work,
-    /// Steps taken: sweeps of the frame that an animation begins with, batches of slices, and parts of sweeps.
+    /// Steps taken: sweeps of the frame that an animation begins with, batches of slices, and parts of
+    /// sweeps.
     pub step: u64,
     /// Slices drawn.
     pub slices: u64,

@@ -88,8 +88,8 @@ impl Optimizer {
     /// [`Checkpoint::config`] gives back) and, for [`Optimizer::for_demand`], the same demand.
     ///
     /// # Errors
-    /// [`CheckpointError::OtherObjective`] if it was not; [`CheckpointError::Damaged`] if its parts do not fit
-    /// each other. Nothing is changed then.
+    /// [`CheckpointError::OtherObjective`] if it was not; [`CheckpointError::Damaged`] if its parts do not
+    /// fit each other. Nothing is changed then.
     pub fn resume(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
         let Checkpoint { header, points, moments } = checkpoint;
         let here = self.identity.get_or_init(|| Identity::new(&self.config, &self.objective));

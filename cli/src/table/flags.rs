@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::{Arg, Args, ValueEnum};
 use fsot::config::{Descent, DimensionGroup, Domain, Work};
 use fsot::kernel::{SpatialKernel, TemporalKernel};
 use fsot::{Config, Extent, Kernel, Until};
 
-use crate::{Shared, temporal};
+use crate::{Shared, checkpoint, temporal};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -17,6 +17,9 @@ Examples:
       a still table of two independent pairs of numbers, such as a point on a light and one on a lens
   fsot table --frames 16 --temporal ema:0.1 --seed 7
       for temporal antialiasing that keeps nine tenths of its history
+  fsot table --spp 16 --checkpoint run.checkpoint --every 30s --out table.npy
+  fsot table --resume run.checkpoint --out table.npy
+      the same bits, also if the first was killed; what the checkpoint holds can't be given again
 
 numpy.load reads the table: float32 in [0, 1), axes [frame, y, x, sample, dim].
 
@@ -26,7 +29,7 @@ Exit codes: 0 done, 1 refused or failed, 2 bad command line, 3 ended early by a 
 
 /// Optimises a table of random numbers so that a renderer's error is blue noise in space and time.
 #[derive(Args, Debug)]
-#[command(after_help = EXAMPLES, allow_negative_numbers = true)]
+#[command(after_help = EXAMPLES, allow_negative_numbers = true, mut_arg("resume", alone))]
 pub struct Arguments {
     /// Columns of a frame, in pixels.
     #[arg(long, default_value_t = 64)]
@@ -84,6 +87,8 @@ pub struct Arguments {
     /// Where to write the table, as .npy; its metadata goes beside it, as .json.
     #[arg(long, default_value = "table.npy", value_name = "NPY")]
     pub(super) out: PathBuf,
+    #[command(flatten)]
+    pub(super) checkpoint: checkpoint::Arguments,
     #[command(flatten)]
     pub(super) shared: Shared,
 }
@@ -149,6 +154,27 @@ impl Arguments {
             .with_descent(descent)
             .with_seed(self.seed)
     }
+}
+
+/// What is resumed has been told all this.
+fn alone(resume: Arg) -> Arg {
+    resume.conflicts_with_all([
+        "width",
+        "height",
+        "frames",
+        "spp",
+        "dims",
+        "sigma",
+        "temporal",
+        "groups",
+        "domain",
+        "optimizer",
+        "slices_per_class",
+        "sweeps",
+        "frame_sweeps",
+        "seconds",
+        "seed",
+    ])
 }
 
 fn parse_groups(text: &str) -> Result<Groups, String> {

@@ -4,14 +4,17 @@ mod flags;
 mod summary;
 
 use fsot::files::{BoundRecord, Metadata};
+use fsot::optimizer::StepReport;
 use fsot::{Config, Optimizer, SampleTable, metrics};
 
 pub use self::flags::Arguments;
 use self::summary::Summary;
+use crate::checkpoint::Writer;
 use crate::console::Console;
 use crate::interrupt::Interrupt;
 use crate::output::{self, Output};
 use crate::progress::Progress;
+use crate::run::Course;
 use crate::{Ended, Failure, advice, run};
 
 /// Makes the table.
@@ -21,16 +24,36 @@ use crate::{Ended, Failure, advice, run};
 pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
     let Arguments { out, shared, no_bound, .. } = arguments;
     let beside = Metadata::path_beside(out);
-    let outputs = [
+    let mut outputs = vec![
         Output { flag: "--out", path: out, endings: &["npy"] },
         Output { flag: "--out", path: &beside, endings: &["json"] },
     ];
-    output::check(&outputs, &[])?;
+    outputs.extend(arguments.checkpoint.output());
+    output::check(&outputs, &arguments.checkpoint.inputs())?;
     shared.start_threads()?;
     let advised = |failure| advice::with_flags(failure, advice::of_table);
-    let mut optimizer = Optimizer::new(arguments.config()).map_err(|error| advised(error.into()))?;
+    let (mut optimizer, course) = match arguments.checkpoint.resumed()? {
+        None => {
+            let optimizer = Optimizer::new(arguments.config()).map_err(|error| advised(error.into()))?;
+            (optimizer, Course::New(arguments.until()))
+        }
+        Some(checkpoint) => {
+            let mut optimizer = Optimizer::new(checkpoint.config()?)?;
+            optimizer.resume(checkpoint)?;
+            (optimizer, Course::Resumed)
+        }
+    };
     let progress = Progress::new(shared);
-    let report = run::observed(&mut optimizer, arguments.until(), &progress).map_err(advised)?;
+    let mut writer = arguments.checkpoint.writer();
+    let watch = |step: &StepReport, is_last| {
+        if let Some(writer) = &mut writer {
+            writer.look(step, is_last);
+        }
+    };
+    let report = run::watched(&mut optimizer, course, &progress, watch).map_err(advised)?;
+    let path = writer.as_ref().map(|writer| writer.path().to_owned());
+    // The table is written all the same.
+    let written = writer.map_or(Ok(()), Writer::end);
 
     // Before the bound, which takes a while and may be stopped.
     let (table, mut metadata) = (optimizer.table(), optimizer.metadata(&report));
@@ -45,7 +68,11 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
     let summary = Summary::new(out, &metadata, bound_left_out);
     let mut console = Console::new(shared);
     console.say(|out| summary.words(out));
+    if let (true, Some(path)) = (metadata.run.ended_early && written.is_ok(), &path) {
+        console.say(|out| writeln!(out, "the run goes on with --resume {}", path.display()));
+    }
     console.figures(&summary);
+    written?;
     console.end(Ended::stopped_if(metadata.run.ended_early || bound_left_out))
 }
 

@@ -6,6 +6,7 @@ mod outputs;
 mod pictures;
 mod points;
 mod printing;
+mod resuming;
 mod runs;
 #[cfg(unix)]
 mod signals;
