@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::Optimizer;
+use super::course::MOST_COUNT;
 use crate::config::{Role, Until, Work};
 use crate::error::{ConfigError, RangeError};
 use crate::objective::Pace;
@@ -16,8 +17,6 @@ const USUAL_SLICES: u64 = 320;
 /// Share of the time of an animation that its first frame gets: the frame's quality is what single frames
 /// keep.
 const FRAME_SHARE: f64 = 0.2;
-/// Most slices per class, and sweeps, of a run.
-const MOST_COUNT: u64 = 1_000_000_000;
 /// Least share of the work that terms by which a run is counted may do.
 const LEAST_SHARE: f64 = 1e-3;
 /// Windows of a calibration that would fill the time of a run: a dozen are needed at most.

@@ -7,7 +7,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::course::Course;
+use super::course::{Course, MOST_COUNTED};
 use super::frame::displaced;
 use crate::config::{Config, Work};
 use crate::error::CheckpointError;
@@ -295,6 +295,11 @@ impl Header {
         let all = extent.samples() * dims;
         if held != all && held != all / extent.frames {
             return Err(damaged(format!("{held} coordinates for a table of {all}")));
+        }
+        let Counters { steps, swept, descended, .. } = self.place;
+        let is_counted = steps.max(swept) <= MOST_COUNTED && descended >= 0;
+        if !is_counted || !self.course.as_ref().is_none_or(Course::is_possible) {
+            return Err(damaged("its counters are those of no run"));
         }
         Ok(held)
     }

@@ -6,6 +6,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::config::{Until, Work};
 
+/// Most slices per class, and sweeps, of a run.
+pub(super) const MOST_COUNT: u64 = 1_000_000_000;
+/// More steps, sweeps or slices than anybody takes; there is room above to count on.
+pub(super) const MOST_COUNTED: u64 = 1 << 56;
+/// Some thirty thousand years.
+const LONGEST: Duration = Duration::from_secs(1_000_000_000_000);
+
 /// A run on its way.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -46,6 +53,16 @@ impl Course {
             _ => None,
         };
         Self { work, step: 0, slices: 0, spent: Duration::ZERO, plateau }
+    }
+
+    /// Whether a run can be here: a checkpoint may say anything.
+    pub(super) fn is_possible(&self) -> bool {
+        let Self { ref work, step, slices, spent, ref plateau } = *self;
+        let counts = [work.frame_sweeps, work.slices_per_class, work.sweeps];
+        counts.iter().all(|&count| count <= MOST_COUNT)
+            && step.max(slices) <= MOST_COUNTED
+            && spent < LONGEST
+            && plateau.as_ref().is_none_or(|plateau| plateau.window > 0 && plateau.steps < plateau.window)
     }
 
     pub(super) fn has_converged(&self) -> bool {

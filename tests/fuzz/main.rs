@@ -10,13 +10,15 @@ mod seeds;
 use std::env;
 use std::fs::File;
 use std::io::Write;
+use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use fsot::SampleTable;
 use fsot::files::{ImportOptions, Metadata};
+use fsot::optimizer::{Checkpoint, StepReport};
 use fsot::targets::{Density, Picture, Tone};
+use fsot::{Optimizer, SampleTable};
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -124,6 +126,32 @@ fn metadata() {
             let pair = SampleTable::load_with(&path);
             assert_eq!(read.is_ok_and(|metadata| metadata.check(&table).is_ok()), pair.is_ok());
             pair.is_ok_and(|(found, _)| found == table)
+        },
+    );
+}
+
+/// With the right hash too, which is no signature.
+#[test]
+fn checkpoints() {
+    let (config, seeds) = seeds::checkpoints();
+    fuzz(
+        "run.checkpoint",
+        2000,
+        |random| mutate::checkpoint(random, &seeds),
+        |path, _| {
+            let Ok(checkpoint) = Checkpoint::load(path) else { return false };
+            let (_, _) = (is_table(&checkpoint.table()), checkpoint.config());
+            let mut optimizer = Optimizer::new(config.clone()).unwrap();
+            if optimizer.resume(checkpoint).is_ok() {
+                let mut steps = 0;
+                let few = |_: &StepReport| {
+                    steps += 1;
+                    if steps < 3 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+                };
+                optimizer.finish_observed(few).unwrap();
+                is_table(&optimizer.table());
+            }
+            true
         },
     );
 }

@@ -4,6 +4,7 @@
 use fsot::files::{Axis, ImportOptions};
 use rand::RngExt;
 use rand_xoshiro::Xoshiro256PlusPlus;
+use sha2::{Digest, Sha256};
 
 use crate::seeds::npy;
 
@@ -258,6 +259,36 @@ pub fn png(random: &mut Random, seeds: &[Vec<u8>]) -> Vec<u8> {
 fn crc(bytes: &[u8]) -> u32 {
     let step = |crc: u32, _| if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 };
     !bytes.iter().fold(u32::MAX, |crc, &byte| (0..8).fold(crc ^ u32::from(byte), step))
+}
+
+/// A checkpoint whose header says something else, with the hash of that; or any damage.
+pub fn checkpoint(random: &mut Random, seeds: &[Vec<u8>]) -> Vec<u8> {
+    if random.random_bool(0.1) {
+        return bytes(random, seeds);
+    }
+    let whole = pick(random, seeds);
+    let begin = whole.iter().position(|byte| *byte == b'\n').unwrap() + 1;
+    let (length, rest) = whole[begin..].split_first_chunk().unwrap();
+    let (header, lists) = rest.split_at(u64::from_le_bytes(*length) as usize);
+    let mut header = String::from_utf8(header.to_vec()).unwrap();
+    for _ in 0..random.random_range(1..=3) {
+        let numbers: Vec<_> = header.match_indices(|c: char| c.is_ascii_digit()).map(|(at, _)| at).collect();
+        let at = *pick(random, &numbers);
+        let number =
+            ["0", "1", "9", "-1", "18446744073709551615", "1e300", "null", "4294967296", "2147483648"];
+        header.replace_range(at..=at, *pick(random, &number[..]));
+    }
+    let mut lists = lists[..lists.len() - 32].to_vec();
+    if random.random_bool(0.3) {
+        damage(random, &mut lists, seeds);
+    }
+    let mut bytes = whole[..begin].to_vec();
+    bytes.extend((header.len() as u64).to_le_bytes());
+    bytes.extend(header.as_bytes());
+    bytes.extend(lists);
+    let hash = Sha256::digest(&bytes);
+    bytes.extend(hash.as_slice());
+    bytes
 }
 
 /// Any options at all.

@@ -1,12 +1,15 @@
 //! Sound files, small ones, which are then damaged.
 
 use std::fs;
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use exr::prelude::*;
+use fsot::config::{Descent, Work};
 use fsot::files::{BoundEstimate, BoundRecord, KernelTaps, Metadata};
 use fsot::kernel::Tap;
-use fsot::{Config, Extent, SampleTable};
+use fsot::optimizer::StepReport;
+use fsot::{Config, Extent, Optimizer, SampleTable, Until};
 use png::{BitDepth, ColorType};
 
 /// A `.npy` file with this dictionary, whose length need not be right.
@@ -17,6 +20,22 @@ pub fn npy(version: u8, dictionary: &str, values: &[u8]) -> Vec<u8> {
         _ => length.to_le_bytes().to_vec(),
     };
     [b"\x93NUMPY", &[version, 0][..], &length, dictionary.as_bytes(), values].concat()
+}
+
+/// Of a frame, of slices with moments and of sweeps, all of one run; and what it optimises.
+pub fn checkpoints() -> (Config, Vec<Vec<u8>>) {
+    let config = Config::new(Extent::animation(2, 4, 4), 2).with_descent(Descent::sgd());
+    let mut optimizer = Optimizer::new(config.clone()).unwrap();
+    let mut seeds = Vec::new();
+    let work = Work { frame_sweeps: 2, slices_per_class: 32, sweeps: 1 };
+    let observe = |step: &StepReport| {
+        let mut bytes = Vec::new();
+        step.checkpoint().write(&mut bytes).unwrap();
+        seeds.push(bytes);
+        ControlFlow::Continue(())
+    };
+    optimizer.run_observed(Until::Work(work), observe).unwrap();
+    (config, seeds)
 }
 
 /// Arrays of all types, orders and numbers of axes.
