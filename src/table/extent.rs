@@ -17,6 +17,7 @@ use crate::error::ExtentError;
 /// assert_eq!((extent.sites(), extent.samples()), (8 * 64 * 32, 4 * 8 * 64 * 32));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Extent {
     /// Frames; the animation wraps, frame `frames` is frame 0 again.
     pub frames: usize,
