@@ -186,6 +186,11 @@ pub(crate) fn check_memory(what: &'static str, bytes: usize) -> Result<(), Exten
     reserved.map_err(|_| ExtentError::NoMemory { what, bytes })
 }
 
+/// Bytes that a buffer holds, used or not.
+pub(crate) fn bytes_of<T>(buffer: &Vec<T>) -> usize {
+    size_of::<T>() * buffer.capacity()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
