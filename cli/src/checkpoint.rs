@@ -37,8 +37,8 @@ impl Arguments {
     }
 
     /// What is read.
-    pub fn inputs(&self) -> Vec<&Path> {
-        self.resume.iter().map(PathBuf::as_path).collect()
+    pub fn input(&self) -> Option<&Path> {
+        self.resume.as_deref()
     }
 
     /// What is written, but for the file that is read too.

@@ -23,10 +23,11 @@ pub enum Course {
 /// # Errors
 /// As [`Optimizer::run`].
 pub fn observed(optimizer: &mut Optimizer, until: Until, progress: &Progress) -> Result<RunReport, Failure> {
-    watched(optimizer, Course::New(until), progress, |_, _| {})
+    watched(optimizer, Course::New(until), progress, |_, _| ControlFlow::Continue(()))
 }
 
-/// The same, showing each step also to `watch`, which is told whether a signal has made it the last one.
+/// The same under the eyes of somebody who sees each step, is told whether a signal has made it the last one,
+/// and may break off as well.
 ///
 /// # Errors
 /// As [`Optimizer::run`].
@@ -34,7 +35,7 @@ pub fn watched(
     optimizer: &mut Optimizer,
     course: Course,
     progress: &Progress,
-    mut watch: impl FnMut(&StepReport, bool) + Send,
+    mut watch: impl FnMut(&StepReport, bool) -> ControlFlow<()> + Send,
 ) -> Result<RunReport, Failure> {
     let interrupt = Interrupt::listen()?;
     let observe = |step: &StepReport| {
@@ -42,7 +43,7 @@ pub fn watched(
         if !came {
             progress.show(step);
         }
-        watch(step, came);
+        watch(step, came)?;
         if came { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let report = match course {
