@@ -3,7 +3,8 @@
 //! | verb | makes |
 //! |---|---|
 //! | [`table`] | a sample table, and its metadata |
-//! | [`inspect`] | figures and a page of pictures of a table |
+//! | [`inspect`] | figures of a table |
+//! | [`report`] | a page about one table or several, or a sheet of their pictures |
 //! | [`import`] | a sample table of somebody else's file |
 //! | [`points`] | point sets: labelled classes, progressive sequences, stipplings |
 //!
@@ -16,14 +17,14 @@
 //! | 2 | the command line cannot be understood |
 //! | 3 | SIGINT, SIGTERM or SIGHUP ended the run early; what it had reached is written, and says so |
 //!
-//! A signal before the first step, or during `fsot inspect`, finds nothing to keep and kills the process as
+//! A signal before the first step, or during `fsot inspect` and `fsot report`, finds nothing to keep and kills the process as
 //! signals do (130, 143 and 129 to a shell). A reader of the output who goes away (`| head -1`) is no
 //! failure.
 //!
 //! # Shared with other programs
 //!
 //! [`interrupt`] for signals, [`output`] for files that are checked before the work, [`progress`] for bars,
-//! [`console`] for what is printed, [`run`] for a run with all of them, [`draw`] for pages, [`temporal`] for
+//! [`console`] for what is printed, [`run`] for a run with all of them, [`draw`] for pictures, [`temporal`] for
 //! kernels as they are written on a command line.
 
 use std::process::ExitCode;
@@ -40,6 +41,7 @@ pub mod interrupt;
 pub mod output;
 pub mod points;
 pub mod progress;
+pub mod report;
 pub mod run;
 pub mod table;
 pub mod temporal;
@@ -86,6 +88,7 @@ struct Command {
 enum Verb {
     Table(table::Arguments),
     Inspect(inspect::Arguments),
+    Report(report::Arguments),
     Import(import::Arguments),
     Points(points::Arguments),
 }
@@ -95,7 +98,9 @@ A tour:
   fsot table
       64 x 64 pixels and 10 frames in a second, to table.npy and table.json
   fsot inspect table.npy
-      what the table is worth: figures, and table.inspect.png to look at
+      what the table is worth, in figures
+  fsot report table.npy
+      the same to look at, in report.html; several tables stand side by side
   fsot table --frames 1 --spp 4 --dims 4 --seconds 10 --out render.npy
       a still table for a renderer that takes 4 samples of 4 numbers per pixel
   fsot import mask.npy --out table.npy
@@ -119,6 +124,7 @@ pub fn main() -> ExitCode {
     let ended = match Command::parse().verb {
         Verb::Table(arguments) => table::run(&arguments),
         Verb::Inspect(arguments) => inspect::run(&arguments),
+        Verb::Report(arguments) => report::run(&arguments),
         Verb::Import(arguments) => import::run(&arguments),
         Verb::Points(arguments) => points::run(&arguments),
     };

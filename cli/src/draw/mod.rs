@@ -1,5 +1,4 @@
-//! Pages to draw on.
+//! Pictures.
 
-pub mod canvas;
 pub mod page;
 pub mod raster;

@@ -17,7 +17,7 @@ pub fn header(out: &mut dyn Write, inspection: &Inspection) -> io::Result<()> {
         out,
         "filter: {}; {} test integrands per family, seed {}",
         filter(inspection),
-        inspection.integrands,
+        inspection.effort.integrands,
         inspection.seed
     )?;
     Ok(())
@@ -35,7 +35,7 @@ pub fn shape(table: &SampleTable) -> String {
     )
 }
 
-/// The filter in words that a command line and a bitmap font can show.
+/// The filter in words that every terminal can show.
 pub fn filter(inspection: &Inspection) -> String {
     let space = format!("exp(-r^2/{}^2) in pixels", inspection.sigma());
     match &inspection.kernel.temporal {

@@ -1,0 +1,244 @@
+//! The figures as tables, and what they mean.
+
+use fsot::metrics::{Estimate, Ratios};
+use maud::{Markup, html};
+
+use super::page::table;
+use super::{Column, Report};
+use crate::inspect::figures::{GroupFigures, LOW};
+
+/// To three places, or to three digits above 1.
+pub fn ratio(value: f64) -> String {
+    match value.abs() {
+        size if size.is_nan() => "–".into(),
+        size if size >= 999.5 => format!("{value:.2e}"),
+        size if size >= 99.95 => format!("{value:.0}"),
+        size if size >= 9.995 => format!("{value:.1}"),
+        size if size >= 0.9995 => format!("{value:.2}"),
+        _ => format!("{value:.3}"),
+    }
+}
+
+/// The three rings.
+pub fn anisotropy(figures: &GroupFigures) -> String {
+    let rings = figures.spectra.anisotropy().map(|ring| ratio(ring.along_y_over_along_x));
+    rings.join(", ")
+}
+
+/// A cell of the table.
+enum Cell {
+    Missing,
+    Plain(String),
+    /// With a bar, since it is an error.
+    Ratio(f64, f64),
+}
+
+impl From<Estimate> for Cell {
+    fn from(estimate: Estimate) -> Self {
+        Self::Ratio(estimate.mean, estimate.standard_error)
+    }
+}
+
+/// A line of the table: where it is explained, what it is called, what white noise has, and what tables have.
+struct Line<'a> {
+    id: &'static str,
+    name: String,
+    is_part: bool,
+    white: &'static str,
+    of: Box<dyn Fn(&GroupFigures) -> Cell + 'a>,
+}
+
+/// All lines of a dimension group.
+fn lines<'a>(families: &[String], animated: bool) -> Vec<Line<'a>> {
+    let line = |id, name: &str, of: fn(&GroupFigures) -> Cell| Line {
+        id,
+        name: name.into(),
+        is_part: false,
+        white: "1",
+        of: Box::new(of),
+    };
+    let ratios = |ratios: fn(&GroupFigures) -> &Ratios| {
+        move |name: &str| {
+            let family = name.to_owned();
+            let of = move |figures: &GroupFigures| {
+                ratios(figures).family(&family).map_or(Cell::Missing, Cell::from)
+            };
+            Line { id: "filtered-error", name: name.to_owned(), is_part: true, white: "1", of: Box::new(of) }
+        }
+    };
+    let of_frames = |figures: &GroupFigures, ratios: &Ratios| match figures.animated {
+        true => ratios.mean.into(),
+        false => Cell::Missing,
+    };
+    let _ = &of_frames;
+    let mut lines =
+        vec![line("filtered-error", "filtered error", |figures| figures.errors.spatio_temporal.mean.into())];
+    lines.extend(families.iter().map(|family| ratios(|figures| &figures.errors.spatio_temporal)(family)));
+    if animated {
+        lines.push(line("one-frame", "one frame, filtered in space", |figures| {
+            figures.errors.spatial.mean.into()
+        }));
+    }
+    lines.push(line("one-pixel", "one pixel, not filtered", |figures| figures.errors.unfiltered.mean.into()));
+    lines.push(line("bias", "bias of the table", |figures| figures.bias.table.mean.into()));
+    if animated {
+        lines.push(line("bias", "bias of a frame", |figures| match figures.animated {
+            true => figures.bias.frame.mean.into(),
+            false => Cell::Missing,
+        }));
+    }
+    lines.push(line("discrepancy", "discrepancy of a frame", |figures| {
+        figures.discrepancy.map_or(Cell::Missing, |value| Cell::Ratio(value, f64::NAN))
+    }));
+    lines.push(line("low", "power at low frequencies", |figures| {
+        figures.low.map_or(Cell::Missing, |value| Cell::Ratio(value, f64::NAN))
+    }));
+    lines.push(line("direction", "power along y over x", |figures| Cell::Plain(anisotropy(figures))));
+    lines.push(line("cells", "spread of cells", |figures| {
+        let evenness = &figures.evenness;
+        match figures.dims.len() <= 2 && evenness.per_side > 1 {
+            true => Cell::Ratio(evenness.spread, f64::NAN),
+            false => Cell::Missing,
+        }
+    }));
+    lines
+}
+
+/// The table of all figures.
+pub fn all(report: &Report) -> Markup {
+    let mut groups: Vec<&[usize]> = Vec::new();
+    for group in report.columns.iter().flat_map(|column| &column.groups) {
+        if !groups.contains(&&*group.dims) {
+            groups.push(&group.dims);
+        }
+    }
+    let families = report.columns[0].shown().errors.unfiltered.families.iter();
+    let families: Vec<String> = families.map(|family| family.name.to_string()).collect();
+    let lines = lines(&families, report.is_animated());
+    let find = |column: &Column, dims: &[usize]| column.groups.iter().position(|group| group.dims == dims);
+    table(
+        "figures of all tables",
+        &html! {
+            thead { tr {
+                th scope="col" { "figure" }
+                th.number scope="col" { "white noise" }
+                @for column in &report.columns { th.number scope="col" { (column.label) } }
+            } }
+            @for dims in &groups { tbody {
+                tr.group { th scope="rowgroup" colspan=(report.columns.len() + 2) { (title(dims)) } }
+                @for line in &lines { tr.part[line.is_part] {
+                    th scope="row" { a href={ "#" (line.id) } { (line.name) } }
+                    td.number { (line.white) }
+                    @for column in &report.columns {
+                        (cell(&find(column, dims).map_or(Cell::Missing, |at| (line.of)(&column.groups[at]))))
+                    }
+                } }
+            } }
+            tbody {
+                tr.group { th scope="rowgroup" colspan=(report.columns.len() + 2) { "all dimensions" } }
+                tr {
+                    th scope="row" { a href="#bound" { "bound" } }
+                    td.number { "1" }
+                    @for column in &report.columns {
+                        (cell(&Cell::Ratio(column.bound.ratio_to_white_noise, column.bound.ratio_standard_error)))
+                    }
+                }
+            }
+        },
+    )
+}
+
+fn title(dims: &[usize]) -> String {
+    match dims {
+        [one] => format!("dimension {one}"),
+        [a, b] => format!("dimensions {a} and {b}"),
+        all => format!("dimensions {} to {} together", all[0], all[all.len() - 1]),
+    }
+}
+
+fn cell(cell: &Cell) -> Markup {
+    match cell {
+        Cell::Missing => html! { td.number { "–" } },
+        Cell::Plain(text) => html! { td.number { (text) } },
+        Cell::Ratio(value, error) => html! {
+            td.number.bar style=(format!("--share:{:.1}%", 100.0 * value.clamp(0.0, 1.0))) {
+                (ratio(*value))
+                @if error.is_finite() { small { " ± " (format!("{error:.3}")) } }
+            }
+        },
+    }
+}
+
+/// Density next to the faces.
+pub fn faces(report: &Report) -> Markup {
+    let of = report.columns.iter().flat_map(|column| {
+        column.profiles.iter().enumerate().map(move |(dim, profile)| (&column.label, dim, &profile.marginal))
+    });
+    let all: Vec<_> = of.collect();
+    let Some((_, _, first)) = all.first() else { return html! {} };
+    table(
+        "density next to the faces",
+        &html! {
+            caption { "Density next to the faces: samples within so much of 0 or 1, where even ones have 1" }
+            thead { tr {
+                th scope="col" { "table" } th.number scope="col" { "dimension" }
+                @for face in first.faces { th.number scope="col" { "within " (face.within) } }
+                th.number scope="col" { "values of 0" }
+            } }
+            tbody { @for (label, dim, marginal) in &all { tr {
+                th scope="row" { (label) }
+                td.number { (dim) }
+                @for face in marginal.faces { td.number {
+                    (format!("{:.2}", face.density))
+                    small { " random 1 ± " (format!("{:.2}", face.standard_error)) }
+                } }
+                td.number { (marginal.zeros) }
+            } } }
+        },
+    )
+}
+
+/// A name for links, the figure, and its convention.
+pub fn meanings(report: &Report) -> Vec<(&'static str, &'static str, String)> {
+    let effort = report.columns.iter().map(|column| column.inspection.effort);
+    let list = |counts: Vec<usize>| {
+        let words: Vec<String> = counts.iter().map(usize::to_string).collect();
+        if words.windows(2).all(|pair| pair[0] == pair[1]) { words[0].clone() } else { words.join(", ") }
+    };
+    let integrands = list(effort.clone().map(|effort| effort.integrands).collect());
+    let of_bias = list(effort.clone().map(|effort| effort.of_bias).collect());
+    let some = effort.clone().any(|effort| effort.frames.is_some());
+    let seed = report.columns[0].inspection.seed;
+    let frames = if some { " Of long animations two frames are averaged." } else { "" };
+    let mut meanings = vec![
+        ("ratio", "ratio to white noise", "The figure, divided by what independent uniform random numbers in a \
+            table of the same shape have in the mean (an exact expectation, not a draw): 1 is random, 0 is no error, \
+            and half is worth twice the samples.".into()),
+        ("filtered-error", "filtered error", format!("Squared error of the pixels after the filter in space and \
+            time, averaged over pixels and over {integrands} random test functions of each family (seed {seed}): \
+            edges of half-planes (half-space), smooth functions, discs (ball) and boxes; families count alike.{frames} \
+            The filter wraps at the borders of the table, as the table does.")),
+        ("one-frame", "one frame", "The same with the filter in space alone: what is seen of a single frame.".into()),
+        ("one-pixel", "one pixel", "The same without any filter. With one sample per pixel no table that fills the \
+            square evenly can be better than 1.".into()),
+        ("bias", "bias", format!("Squared error of the mean over all samples of the table (or of a frame), with \
+            {of_bias} test functions of each family: what no filter takes away, compared with as many random \
+            samples.")),
+        ("discrepancy", "discrepancy", "Squared L2 star discrepancy of the samples of a frame: how unevenly they \
+            fill boxes that begin at 0. Left out where comparing all pairs would take long.".into()),
+        ("low", "power at low frequencies", format!("Mean power of the error at up to {LOW} cycles per pixel, \
+            without the mean itself.")),
+        ("direction", "power along y over x", "Power of frequencies within 15° of the y axis over that within 15° \
+            of the x axis, in rings from 0.15 to 0.25, 0.25 to 0.35 and 0.35 to 0.5 cycles per pixel: 1 where no \
+            direction is preferred.".into()),
+        ("cells", "spread of cells", "χ² of the counts in equal cells of the square (or parts of the interval) per \
+            degree of freedom: 1 is random, 0 is the same count in each.".into()),
+        ("bound", "bound", "What the optimiser minimises: the mean 1-Wasserstein distance between the samples that \
+            a filter holds, projected on random directions, and uniform ones. It bounds the filtered error of every \
+            function.".into()),
+    ];
+    if !report.is_animated() {
+        meanings.retain(|(id, _, _)| *id != "one-frame");
+    }
+    meanings
+}
