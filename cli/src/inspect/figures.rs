@@ -1,6 +1,6 @@
 //! What is measured of a table, and how it is said to programs.
 
-use fsot::config::DimensionGroup;
+use fsot::config::{DimensionGroup, Role};
 use fsot::files::{BoundEstimate, Metadata};
 use fsot::metrics::{
     Bias, Bound, Discrepancy, Estimate, FaceDensity, FilteredError, Integrands, Marginal, Ratios, Spectra,
@@ -144,7 +144,11 @@ fn part(
 /// The objective of `Term::blue_noise` for this shape and filter, at the table.
 pub fn bound(inspection: &Inspection, groups: &[DimensionGroup]) -> Result<BoundEstimate, Failure> {
     let Inspection { table, kernel, seed, effort, .. } = inspection;
-    let config = Config::new(table.extent(), table.dims()).with_groups(groups).with_kernel(kernel.clone());
+    let mut config =
+        Config::new(table.extent(), table.dims()).with_groups(groups).with_kernel(kernel.clone());
+    if !effort.balance {
+        config.terms.retain(|term| term.role == Role::Descend);
+    }
     let objective = Objective::new(&config)?;
     Ok(Bound::measure(table, &objective, *seed, effort.bound_slices)?.total)
 }

@@ -102,6 +102,9 @@ pub(crate) struct Effort {
     pub most_pairs: u64,
     /// Slices per term of the bound.
     pub bound_slices: usize,
+    /// Whether terms that balance whole frames and the whole table count in the bound. Of many samples they
+    /// take nearly all of the time, and nearly no part of the sum.
+    pub balance: bool,
 }
 
 /// What lies beside the table.
@@ -159,6 +162,7 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
             slabs: None,
             most_pairs: MOST_PAIRS,
             bound_slices: *bound_slices as usize,
+            balance: true,
         },
     };
     // A bad kernel is found out before anything is said.

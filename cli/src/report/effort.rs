@@ -22,6 +22,10 @@ const FEW: usize = 2;
 /// Pairs of samples whose comparison takes about a second.
 const MOST_PAIRS: u64 = 1_000_000_000;
 
+/// Samples of a table whose bound is measured with its terms of balance. Of more, these are below a thousandth
+/// of it.
+const MOST_BALANCED: usize = 1 << 16;
+
 /// As much as a page of this table can afford, or as was `asked` for. It depends on nothing else, so that a page
 /// is the same on every machine.
 pub fn of(
@@ -50,5 +54,6 @@ pub fn of(
         slabs: Some(FEW),
         most_pairs: MOST_PAIRS,
         bound_slices,
+        balance: extent.samples() <= MOST_BALANCED,
     })
 }

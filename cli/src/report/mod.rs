@@ -19,7 +19,7 @@ use clap::Args;
 use fsot::config::DimensionGroup;
 use fsot::files::{BoundEstimate, Metadata, WholeFile};
 use fsot::metrics::{Integrands, RadialBin};
-use fsot::{Extent, Kernel, SampleTable};
+use fsot::{Kernel, SampleTable};
 use serde_json::json;
 
 use self::again::Origin;
@@ -85,16 +85,10 @@ struct Column {
     profiles: Vec<Profile>,
 }
 
-/// What the tables stand beside.
-struct White {
-    panels: Panels,
-    shape: String,
-    animated: bool,
-}
-
 /// Everything that is on the page.
 struct Report {
-    white: White,
+    /// White noise of the shape of the first table.
+    white: Panels,
     columns: Vec<Column>,
     /// That made the page.
     command: String,
@@ -125,7 +119,7 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
 
     let mut console = Console::new(shared);
     let labels = labels(paths);
-    let white = White::new(&tables[0], arguments)?;
+    let white = white_noise(&tables[0], arguments)?;
     let mut columns = Vec::new();
     for ((table, path), label) in tables.into_iter().zip(paths).zip(labels) {
         let column = Column::measure(table, path, label, arguments)?;
@@ -165,21 +159,18 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
     console.end(Ended::Done)
 }
 
-impl White {
-    /// White noise of the shape of the first table.
-    fn new(table: &SampleTable, arguments: &Arguments) -> Result<Self, Failure> {
-        let seed = arguments.yardstick.seed;
-        let extent = table.extent();
-        // Another seed than a table's own, which may have started from white noise of this very seed.
-        let white = SampleTable::white_noise(extent, table.dims(), seed ^ 0x0077_6869_7465)?;
-        let dims: Vec<usize> = (0..table.dims().min(2)).collect();
-        let kernel = arguments.yardstick.kernel(extent.frames);
-        let effort = arguments.effort(&white, &kernel)?;
-        let integrands = Integrands::random(dims.len(), effort.integrands, seed)?;
-        let spectra = measured::spectra(&white, &dims, &integrands, &effort)?;
-        let panels = Panels::new(&white, &dims, &kernel, seed, &spectra)?;
-        Ok(Self { panels, shape: shape(&white), animated: extent.frames > 1 })
-    }
+/// Pictures of white noise of the table's shape.
+fn white_noise(table: &SampleTable, arguments: &Arguments) -> Result<Panels, Failure> {
+    let seed = arguments.yardstick.seed;
+    let extent = table.extent();
+    // Another seed than a table's own, which may have started from white noise of this very seed.
+    let white = SampleTable::white_noise(extent, table.dims(), seed ^ 0x0077_6869_7465)?;
+    let dims: Vec<usize> = (0..table.dims().min(2)).collect();
+    let kernel = arguments.yardstick.kernel(extent.frames);
+    let effort = arguments.effort(&white, &kernel)?;
+    let integrands = Integrands::random(dims.len(), effort.integrands, seed)?;
+    let spectra = measured::spectra(&white, &dims, &integrands, &effort)?;
+    Panels::new(&white, &dims, &kernel, seed, &spectra)
 }
 
 impl Column {
@@ -218,10 +209,6 @@ impl Column {
         self.shown().errors.spatio_temporal.mean.mean
     }
 
-    fn extent(&self) -> Extent {
-        self.inspection.table.extent()
-    }
-
     fn json(&self) -> serde_json::Value {
         let Self { label, inspection, beside, groups, bound, origin, .. } = self;
         let mut figures = measured::json(inspection, beside, groups, bound);
@@ -243,7 +230,7 @@ impl Report {
     /// Radial averages: white noise's, then the tables'.
     fn radial(&self) -> Vec<(&str, &[RadialBin])> {
         let tables = self.columns.iter().map(|column| (column.label.as_str(), &*column.panels.radial));
-        std::iter::once(("white noise", &*self.white.panels.radial)).chain(tables).collect()
+        std::iter::once(("white noise", &*self.white.radial)).chain(tables).collect()
     }
 
     fn is_animated(&self) -> bool {

@@ -55,45 +55,65 @@ pub fn section(id: &str, heading: &str, inside: &Markup) -> Markup {
     html! { section id=(id) aria-labelledby={ (id) "-heading" } { h2 id={ (id) "-heading" } { (heading) } (inside) } }
 }
 
-/// Pictures of one kind, side by side, and how to read them.
-pub fn kind(heading: &str, pictures: &[Markup], words: &Markup) -> Markup {
+/// A picture with what it is of, and the pixels of the page that it takes across.
+pub struct Figure {
+    width: usize,
+    inside: Markup,
+    is_plot: bool,
+}
+
+/// Figures of one kind, side by side, and how to read them.
+pub fn kind(heading: &str, figures: &[Figure], words: &Markup) -> Markup {
+    let width: usize = figures.iter().map(|figure| figure.width).sum();
     html! {
         div.kind {
             h3 { (heading) }
-            div.pictures { @for picture in pictures { (picture) } }
+            div.figures style=(format!("--across:calc({width}px + {}rem)", figures.len() - 1)) {
+                @for figure in figures {
+                    figure.plot[figure.is_plot] style=(format!("--width:{}px", figure.width)) { (figure.inside) }
+                }
+            }
             div.words { (words) }
         }
     }
 }
 
+/// Pixels of the page that a picture may take: fewer where many stand side by side.
+pub fn room(pictures: usize) -> usize {
+    if pictures <= 3 { MOST } else { 192 }
+}
+
 /// A grey picture, its pixels enlarged by a whole number.
-pub fn picture(label: &str, picture: &Grey, alt: &str) -> Result<Markup, Failure> {
+pub fn picture(label: &str, picture: &Grey, alt: &str, room: usize) -> Result<Figure, Failure> {
     let [width, height] = [picture.width(), picture.height()];
-    let zoom = (WIDTH / width.max(height)).max(1);
+    let side = width.max(height);
+    let mut zoom = (room / side).max(1);
+    if side * zoom < LEAST && side * (zoom + 1) <= MOST {
+        zoom += 1;
+    }
+    let [width, height] = [width, height].map(|side| side * zoom);
     let bytes = STANDARD.encode(picture.to_png()?);
-    Ok(html! {
-        figure style=(format!("--width:{}px", width * zoom)) {
-            img src={ "data:image/png;base64," (bytes) } width=(width * zoom) height=(height * zoom) alt=(alt);
-            figcaption { (label) }
-        }
-    })
+    let inside = html! {
+        img src={ "data:image/png;base64," (bytes) } width=(width) height=(height) alt=(alt);
+        figcaption { (label) }
+    };
+    // A caption needs a place, however narrow the picture is.
+    Ok(Figure { width: width.max(LEAST), inside, is_plot: false })
 }
 
 /// Points in a square.
-pub fn points(label: &str, dots: &Dots, alt: &str) -> Markup {
-    html! {
-        figure style=(format!("--width:{WIDTH}px")) {
-            (chart::dots(dots, alt))
-            figcaption { (label) br; small { (dots.what) } }
-        }
-    }
+pub fn points(label: &str, dots: &Dots, alt: &str, room: usize) -> Figure {
+    let inside = html! {
+        (chart::dots(dots, alt))
+        figcaption { (label) br; small { (dots.what) } }
+    };
+    Figure { width: room, inside, is_plot: false }
 }
 
 /// A plot of this width.
-pub fn plot(label: &str, plot: &Markup, width: usize) -> Markup {
-    html! {
-        figure.plot style=(format!("--width:{width}px")) { (plot) @if !label.is_empty() { figcaption { (label) } } }
-    }
+pub fn plot(label: &str, plot: &Markup, width: usize) -> Figure {
+    let inside = html! { (plot) @if !label.is_empty() { figcaption { (label) } } };
+    Figure { width, inside, is_plot: true }
 }
 
 /// What a narrow screen scrolls.
@@ -101,5 +121,7 @@ pub fn table(about: &str, inside: &Markup) -> Markup {
     html! { div.table role="region" tabindex="0" aria-label=(about) { table { (inside) } } }
 }
 
-/// Pixels of the page that a picture may take, or that its side is enlarged to.
-const WIDTH: usize = 256;
+/// Pixels of the page that a picture takes across, unless its own are more.
+const MOST: usize = 256;
+/// Pictures below this are enlarged further, if they don't become too large.
+const LEAST: usize = 160;

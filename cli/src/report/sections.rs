@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::figures;
-use super::page::{kind, picture, plot, points, section, table};
+use super::page::{Figure, kind, picture, plot, points, room, section, table};
 use super::panels::Panels;
 use super::{Column, Report, chart};
 use crate::Failure;
@@ -57,7 +57,7 @@ const WHITE: &str = "white noise";
 /// White noise and the tables, with the figure that says how good they are.
 fn all(report: &Report) -> impl Iterator<Item = (&str, &Panels, Option<&Column>)> {
     let tables = report.columns.iter().map(|column| (column.label.as_str(), &column.panels, Some(column)));
-    std::iter::once((WHITE, &report.white.panels, None)).chain(tables)
+    std::iter::once((WHITE, &report.white, None)).chain(tables)
 }
 
 /// One picture of each.
@@ -65,22 +65,26 @@ fn pictures(
     report: &Report,
     pick: impl Fn(&Panels) -> Option<&Grey>,
     alt: impl Fn(&str, Option<&Column>) -> String,
-) -> Result<Vec<Markup>, Failure> {
+) -> Result<Vec<Figure>, Failure> {
+    let room = room(1 + report.columns.len());
     let picked = all(report).filter_map(|(label, panels, column)| Some((label, pick(panels)?, column)));
-    picked.map(|(label, grey, column)| picture(label, grey, &alt(label, column))).collect()
+    picked.map(|(label, grey, column)| picture(label, grey, &alt(label, column), room)).collect()
 }
 
 /// The numbers themselves.
 pub fn samples(report: &Report) -> Result<Markup, Failure> {
+    let room = room(1 + report.columns.len());
     let texture = pictures(
         report,
         |panels| Some(&panels.texture),
         |label, _| format!("First number of each pixel of {label} as a grey level"),
     )?;
-    let of = |pick: fn(&Panels) -> &super::panels::Dots, what: &str| -> Vec<Markup> {
+    let of = |pick: fn(&Panels) -> &super::panels::Dots, what: &str| -> Vec<Figure> {
         let all = all(report);
-        all.map(|(label, panels, _)| points(label, pick(panels), &format!("{what} of {label} as points")))
-            .collect()
+        all.map(|(label, panels, _)| {
+            points(label, pick(panels), &format!("{what} of {label} as points"), room)
+        })
+        .collect()
     };
     let cut = report.columns.iter().any(|column| column.panels.is_cut(&column.inspection.table));
     let one = report.columns.iter().any(|column| column.inspection.table.dims() == 1);
@@ -205,7 +209,7 @@ pub fn spectra(report: &Report) -> Result<Markup, Failure> {
 /// Single coordinates and pairs, up to the faces.
 pub fn coordinates(report: &Report) -> Result<Markup, Failure> {
     let most = report.columns.iter().map(|column| column.profiles.len()).max().unwrap_or(0);
-    let plots = |at: usize| -> Vec<Markup> {
+    let plots = |at: usize| -> Vec<Figure> {
         let of = report.columns.iter().filter_map(|column| Some((&column.label, column.profiles.get(at)?)));
         of.map(|(label, profile)| {
             let face = profile.marginal.faces[2];

@@ -12,9 +12,8 @@ const INK: [u8; 3] = [20, 20, 24];
 
 /// The sheet.
 pub fn picture(report: &Report) -> Color {
-    let rows: Vec<&Panels> = std::iter::once(&report.white.panels)
-        .chain(report.columns.iter().map(|column| &column.panels))
-        .collect();
+    let rows: Vec<&Panels> =
+        std::iter::once(&report.white).chain(report.columns.iter().map(|column| &column.panels)).collect();
     let is_animated = rows.iter().any(|panels| panels.xt.is_some());
     let columns = if is_animated { 7 } else { 6 };
     let at = |index: usize| GAP + index * (SIDE + GAP);
