@@ -115,14 +115,16 @@ pub fn spectra(
     effort: &Effort,
 ) -> Result<Spectra, Failure> {
     let Extent { frames, height, .. } = table.extent();
-    let Some(slabs) = effort.slabs.filter(|&slabs| slabs < frames || slabs < height) else {
+    let [of_frames, of_rows] = effort.slabs;
+    if of_frames >= frames && (of_rows >= height || frames == 1) {
         return Ok(Spectra::measure(table, dims, integrands)?);
-    };
-    let spread = |count: usize| (0..count.min(slabs)).map(move |k| k * count / count.min(slabs));
-    let of_frames = part(table, spread(frames), 0..height)?;
+    }
+    let spread = |all: usize, few: usize| (0..all.min(few)).map(move |k| k * all / all.min(few));
+    let of_frames = part(table, spread(frames, of_frames), 0..height)?;
     let mut spectra = Spectra::measure(&of_frames, dims, integrands)?;
     if frames > 1 {
-        spectra.xt = Spectra::measure(&part(table, 0..frames, spread(height))?, dims, integrands)?.xt;
+        spectra.xt =
+            Spectra::measure(&part(table, 0..frames, spread(height, of_rows))?, dims, integrands)?.xt;
     }
     Ok(spectra)
 }

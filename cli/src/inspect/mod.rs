@@ -16,7 +16,7 @@ use fsot::kernel::{SpatialKernel, TemporalKernel};
 use fsot::{Kernel, SampleTable};
 
 use self::figures::GroupFigures;
-pub(crate) use self::words::{filter, shape};
+pub(crate) use self::words::{filter, shape, temporal_flag};
 use crate::console::Console;
 use crate::{Ended, Failure, Shared, temporal};
 
@@ -96,8 +96,8 @@ pub(crate) struct Effort {
     pub of_bias: usize,
     /// Frames whose filtered errors are averaged; all if `None`.
     pub frames: Option<usize>,
-    /// Frames of the spectrum in x and y, and rows of that in x and t; all if `None`.
-    pub slabs: Option<usize>,
+    /// Frames of the spectrum in x and y, and rows of that in x and t.
+    pub slabs: [usize; 2],
     /// Pairs of samples that a discrepancy may compare.
     pub most_pairs: u64,
     /// Slices per term of the bound.
@@ -159,7 +159,7 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
             integrands,
             of_bias: integrands,
             frames: None,
-            slabs: None,
+            slabs: [usize::MAX; 2],
             most_pairs: MOST_PAIRS,
             bound_slices: *bound_slices as usize,
             balance: true,

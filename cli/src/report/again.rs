@@ -3,10 +3,11 @@
 use std::ffi::OsStr;
 use std::path::Path;
 
-use fsot::Config;
 use fsot::files::Metadata;
+use fsot::kernel::SpatialKernel;
+use fsot::{Config, Kernel};
 
-use crate::inspect::Beside;
+use crate::inspect::{Beside, temporal_flag};
 
 /// How a table came to be, for a reader.
 pub struct Origin {
@@ -22,8 +23,8 @@ pub struct Origin {
 const LONGEST: usize = 40_000;
 
 impl Origin {
-    /// Of the table at this path.
-    pub fn new(path: &Path, beside: &Beside) -> Self {
+    /// Of the table at this path, which is measured under this kernel.
+    pub fn new(path: &Path, beside: &Beside, kernel: &Kernel) -> Self {
         let nothing = |words| Self { words, command: None, configuration: None };
         match beside {
             Beside::Nothing => {
@@ -33,15 +34,15 @@ impl Origin {
             Beside::Foreign(problem) => {
                 nothing(format!("The metadata beside it are not of this table: {problem}."))
             }
-            Beside::Own(metadata) => Self::known(path, metadata),
+            Beside::Own(metadata) => Self::known(path, metadata, kernel),
         }
     }
 
-    fn known(path: &Path, metadata: &Metadata) -> Self {
+    fn known(path: &Path, metadata: &Metadata, kernel: &Kernel) -> Self {
         let Metadata { crate_version, seed, run, bound, sha256, configuration, .. } = metadata;
         let mut words = format!(
-            "Made by fsot {crate_version} with seed {seed}, in {} steps and {:.2} s: {} sweeps of the frame that \
-             an animation begins with, {} slices per pixel, {} sweeps.",
+            "Made by fsot {crate_version} with seed {seed}, in {} steps and {:.2} s: {} sweeps of the \
+             frame that an animation begins with, {} slices per pixel, {} sweeps.",
             run.steps, run.seconds, run.frame_sweeps, run.slices_per_class, run.sweeps
         );
         if let Some(bound) = bound {
@@ -54,14 +55,22 @@ impl Origin {
             words += " The metadata do not say of which values they are.";
         }
         let config = serde_json::from_value::<Config>(configuration.clone());
-        let is_of_table = config.is_ok_and(|config| {
+        let config = config.ok().filter(|config| {
             let [frames, height, width, spp, dims] = metadata.shape;
             config.extent == fsot::Extent { frames, height, width, spp } && config.dims == dims
         });
-        let command = match (is_of_table, path.to_str()) {
+        let kernels = config.as_ref().map(Config::kernels).unwrap_or_default();
+        if !kernels.is_empty() && !kernels.contains(kernel) {
+            words += " It was made for another filter than that of this page";
+            if let [Some(flags)] = &*kernels.iter().map(flags).collect::<Vec<_>>() {
+                words += &format!(": give {flags} to see it under its own");
+            }
+            words += ".";
+        }
+        let command = match (config.is_some(), path.to_str()) {
             (false, _) => {
-                words += " Their configuration is none of fsot table, so there is no command that makes the \
-                          table again.";
+                words += " Their configuration is none of fsot table, so there is no command that makes \
+                          the table again.";
                 None
             }
             (true, None) => {
@@ -84,6 +93,12 @@ impl Origin {
         }
         Self { words, command, configuration }
     }
+}
+
+/// What makes this the filter of the page.
+fn flags(kernel: &Kernel) -> Option<String> {
+    let SpatialKernel::Gaussian { sigma_px } = kernel.spatial else { return None };
+    Some(format!("--sigma {sigma_px} --temporal {}", temporal_flag(&kernel.temporal)?))
 }
 
 /// A word as a shell reads it.

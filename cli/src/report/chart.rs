@@ -52,7 +52,8 @@ impl Plot {
     }
 
     fn label_below(&self, x: f64, text: &str) -> Markup {
-        html! { text x=(place(self.across(x))) y=(place(self.size[1] - MARGINS[3] + 14.0)) text-anchor="middle" { (text) } }
+        let [x, y] = [self.across(x), self.size[1] - MARGINS[3] + 14.0].map(place);
+        html! { text x=(x) y=(y) text-anchor="middle" { (text) } }
     }
 
     fn label_left(&self, y: f64, text: &str) -> Markup {
@@ -131,7 +132,7 @@ pub fn number(line: usize) -> usize {
 
 /// Density along a coordinate: next to 0, between, and next to 1.
 pub fn marginal(profile: &Profile, alt: &str) -> Markup {
-    let size = [340.0, 170.0];
+    let size = [300.0, 165.0];
     let plot = Plot { size, x: [0.0, 3.0], y: [0.0, 2.0] };
     // Three parts of equal width.
     let parts = profile.parts.iter().enumerate();

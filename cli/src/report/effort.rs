@@ -9,25 +9,28 @@ use crate::Failure;
 use crate::inspect::Effort;
 
 /// Values of integrands and terms of transforms that some seconds of a core are enough for.
-const AFFORDABLE: usize = 400_000_000;
+const AFFORDABLE: usize = 1_200_000_000;
 
 /// Test integrands per family of a table that is small enough.
 const USUAL: usize = 256;
 /// Fewer would be a matter of luck.
 const FEWEST: usize = 8;
 
-/// Frames of which an average is taken, and slabs of spectra: thousands of integrands see each.
+/// Frames over which filtered errors are averaged where there are many.
 const FEW: usize = 2;
+
+/// Frames and rows over which spectra are averaged.
+const SLABS: [usize; 2] = [4, 16];
 
 /// Pairs of samples whose comparison takes about a second.
 const MOST_PAIRS: u64 = 1_000_000_000;
 
-/// Samples of a table whose bound is measured with its terms of balance. Of more, these are below a thousandth
-/// of it.
+/// Samples of a table whose bound is measured with its terms of balance. Of more, these are below a
+/// thousandth of it.
 const MOST_BALANCED: usize = 1 << 16;
 
-/// As much as a page of this table can afford, or as was `asked` for. It depends on nothing else, so that a page
-/// is the same on every machine.
+/// As much as a page of this table can afford, or as was `asked` for. It depends on nothing else, so that a
+/// page is the same on every machine.
 pub fn of(
     table: &SampleTable,
     kernel: &Kernel,
@@ -48,10 +51,12 @@ pub fn of(
     let affordable = |frames: usize| AFFORDABLE / (frames * height * width).saturating_mul(of_pixels).max(1);
     let usual = |frames: usize| affordable(frames).clamp(FEWEST, USUAL);
     Ok(Effort {
-        integrands: asked.unwrap_or_else(|| usual(filtered + 2 * FEW)),
+        integrands: asked.unwrap_or_else(|| {
+            usual(filtered + SLABS[0].min(frames) + frames * SLABS[1].min(height) / height)
+        }),
         of_bias: asked.unwrap_or(USUAL).min(usual(frames)),
         frames: some,
-        slabs: Some(FEW),
+        slabs: SLABS,
         most_pairs: MOST_PAIRS,
         bound_slices,
         balance: extent.samples() <= MOST_BALANCED,

@@ -1,6 +1,6 @@
 //! The figures as tables, and what they mean.
 
-use fsot::metrics::{Estimate, Ratios};
+use fsot::metrics::Estimate;
 use maud::{Markup, html};
 
 use super::page::table;
@@ -39,69 +39,52 @@ impl From<Estimate> for Cell {
     }
 }
 
-/// A line of the table: where it is explained, what it is called, what white noise has, and what tables have.
-struct Line<'a> {
+/// A line of the table: where it is explained, what it is called, and what tables have. White noise has 1.
+struct Line {
     id: &'static str,
     name: String,
     is_part: bool,
-    white: &'static str,
-    of: Box<dyn Fn(&GroupFigures) -> Cell + 'a>,
+    of: Box<dyn Fn(&GroupFigures) -> Cell>,
+}
+
+impl Line {
+    fn new(id: &'static str, name: &str, of: impl Fn(&GroupFigures) -> Cell + 'static) -> Self {
+        Self { id, name: name.into(), is_part: false, of: Box::new(of) }
+    }
+
+    /// The filtered error of a family.
+    fn of_family(family: String) -> Self {
+        let name = family.clone();
+        let of = move |figures: &GroupFigures| {
+            figures.errors.spatio_temporal.family(&family).map_or(Cell::Missing, Cell::from)
+        };
+        Self { is_part: true, ..Self::new("filtered-error", &name, of) }
+    }
 }
 
 /// All lines of a dimension group.
-fn lines<'a>(families: &[String], animated: bool) -> Vec<Line<'a>> {
-    let line = |id, name: &str, of: fn(&GroupFigures) -> Cell| Line {
-        id,
-        name: name.into(),
-        is_part: false,
-        white: "1",
-        of: Box::new(of),
+fn lines(families: impl Iterator<Item = String>, animated: bool) -> Vec<Line> {
+    let number = |value: Option<f64>| value.map_or(Cell::Missing, |value| Cell::Ratio(value, f64::NAN));
+    let spread = |figures: &GroupFigures| {
+        let is_known = figures.dims.len() <= 2 && figures.evenness.per_side > 1;
+        is_known.then_some(figures.evenness.spread)
     };
-    let ratios = |ratios: fn(&GroupFigures) -> &Ratios| {
-        move |name: &str| {
-            let family = name.to_owned();
-            let of = move |figures: &GroupFigures| {
-                ratios(figures).family(&family).map_or(Cell::Missing, Cell::from)
-            };
-            Line { id: "filtered-error", name: name.to_owned(), is_part: true, white: "1", of: Box::new(of) }
-        }
-    };
-    let of_frames = |figures: &GroupFigures, ratios: &Ratios| match figures.animated {
-        true => ratios.mean.into(),
-        false => Cell::Missing,
-    };
-    let _ = &of_frames;
-    let mut lines =
-        vec![line("filtered-error", "filtered error", |figures| figures.errors.spatio_temporal.mean.into())];
-    lines.extend(families.iter().map(|family| ratios(|figures| &figures.errors.spatio_temporal)(family)));
-    if animated {
-        lines.push(line("one-frame", "one frame, filtered in space", |figures| {
-            figures.errors.spatial.mean.into()
-        }));
-    }
-    lines.push(line("one-pixel", "one pixel, not filtered", |figures| figures.errors.unfiltered.mean.into()));
-    lines.push(line("bias", "bias of the table", |figures| figures.bias.table.mean.into()));
-    if animated {
-        lines.push(line("bias", "bias of a frame", |figures| match figures.animated {
-            true => figures.bias.frame.mean.into(),
-            false => Cell::Missing,
-        }));
-    }
-    lines.push(line("discrepancy", "discrepancy of a frame", |figures| {
-        figures.discrepancy.map_or(Cell::Missing, |value| Cell::Ratio(value, f64::NAN))
-    }));
-    lines.push(line("low", "power at low frequencies", |figures| {
-        figures.low.map_or(Cell::Missing, |value| Cell::Ratio(value, f64::NAN))
-    }));
-    lines.push(line("direction", "power along y over x", |figures| Cell::Plain(anisotropy(figures))));
-    lines.push(line("cells", "spread of cells", |figures| {
-        let evenness = &figures.evenness;
-        match figures.dims.len() <= 2 && evenness.per_side > 1 {
-            true => Cell::Ratio(evenness.spread, f64::NAN),
-            false => Cell::Missing,
-        }
-    }));
-    lines
+    let errors = [
+        Line::new("one-frame", "one frame, filtered in space", |of| of.errors.spatial.mean.into()),
+        Line::new("one-pixel", "one pixel, not filtered", |of| of.errors.unfiltered.mean.into()),
+        Line::new("bias", "bias of the table", |of| of.bias.table.mean.into()),
+        Line::new("bias", "bias of a frame", |of| of.bias.frame.mean.into()),
+        Line::new("discrepancy", "discrepancy of a frame", move |of| number(of.discrepancy)),
+        Line::new("low", "power at low frequencies", move |of| number(of.low)),
+        Line::new("direction", "power along y over x", |of| Cell::Plain(anisotropy(of))),
+        Line::new("cells", "spread of cells", move |of| number(spread(of))),
+    ];
+    // Of a single frame these repeat what is said already.
+    let is_said =
+        |line: &Line| animated || !["one frame, filtered in space", "bias of a frame"].contains(&&*line.name);
+    let filtered = Line::new("filtered-error", "filtered error", |of| of.errors.spatio_temporal.mean.into());
+    let families = families.map(Line::of_family);
+    std::iter::once(filtered).chain(families).chain(errors.into_iter().filter(is_said)).collect()
 }
 
 /// The table of all figures.
@@ -113,8 +96,7 @@ pub fn all(report: &Report) -> Markup {
         }
     }
     let families = report.columns[0].shown().errors.unfiltered.families.iter();
-    let families: Vec<String> = families.map(|family| family.name.to_string()).collect();
-    let lines = lines(&families, report.is_animated());
+    let lines = lines(families.map(|family| family.name.to_string()), report.is_animated());
     let find = |column: &Column, dims: &[usize]| column.groups.iter().position(|group| group.dims == dims);
     table(
         "figures of all tables",
@@ -128,7 +110,7 @@ pub fn all(report: &Report) -> Markup {
                 tr.group { th scope="rowgroup" colspan=(report.columns.len() + 2) { (title(dims)) } }
                 @for line in &lines { tr.part[line.is_part] {
                     th scope="row" { a href={ "#" (line.id) } { (line.name) } }
-                    td.number { (line.white) }
+                    td.number { "1" }
                     @for column in &report.columns {
                         (cell(&find(column, dims).map_or(Cell::Missing, |at| (line.of)(&column.groups[at]))))
                     }
@@ -140,12 +122,16 @@ pub fn all(report: &Report) -> Markup {
                     th scope="row" { a href="#bound" { "bound" } }
                     td.number { "1" }
                     @for column in &report.columns {
-                        (cell(&Cell::Ratio(column.bound.ratio_to_white_noise, column.bound.ratio_standard_error)))
+                        (cell(&bound(column)))
                     }
                 }
             }
         },
     )
+}
+
+fn bound(column: &Column) -> Cell {
+    Cell::Ratio(column.bound.ratio_to_white_noise, column.bound.ratio_standard_error)
 }
 
 fn title(dims: &[usize]) -> String {
@@ -179,7 +165,8 @@ pub fn faces(report: &Report) -> Markup {
     table(
         "density next to the faces",
         &html! {
-            caption { "Density next to the faces: samples within so much of 0 or 1, where even ones have 1" }
+            caption { "Density next to the faces: samples within so much of 0 or 1. Even ones have 1, \
+                       independent random ones 1 give or take ±" }
             thead { tr {
                 th scope="col" { "table" } th.number scope="col" { "dimension" }
                 @for face in first.faces { th.number scope="col" { "within " (face.within) } }
@@ -190,7 +177,7 @@ pub fn faces(report: &Report) -> Markup {
                 td.number { (dim) }
                 @for face in marginal.faces { td.number {
                     (format!("{:.2}", face.density))
-                    small { " random 1 ± " (format!("{:.2}", face.standard_error)) }
+                    small { " ± " (format!("{:.2}", face.standard_error)) }
                 } }
                 td.number { (marginal.zeros) }
             } } }
@@ -211,31 +198,86 @@ pub fn meanings(report: &Report) -> Vec<(&'static str, &'static str, String)> {
     let seed = report.columns[0].inspection.seed;
     let frames = if some { " Of long animations two frames are averaged." } else { "" };
     let mut meanings = vec![
-        ("ratio", "ratio to white noise", "The figure, divided by what independent uniform random numbers in a \
-            table of the same shape have in the mean (an exact expectation, not a draw): 1 is random, 0 is no error, \
-            and half is worth twice the samples.".into()),
-        ("filtered-error", "filtered error", format!("Squared error of the pixels after the filter in space and \
-            time, averaged over pixels and over {integrands} random test functions of each family (seed {seed}): \
-            edges of half-planes (half-space), smooth functions, discs (ball) and boxes; families count alike.{frames} \
-            The filter wraps at the borders of the table, as the table does.")),
-        ("one-frame", "one frame", "The same with the filter in space alone: what is seen of a single frame.".into()),
-        ("one-pixel", "one pixel", "The same without any filter. With one sample per pixel no table that fills the \
-            square evenly can be better than 1.".into()),
-        ("bias", "bias", format!("Squared error of the mean over all samples of the table (or of a frame), with \
-            {of_bias} test functions of each family: what no filter takes away, compared with as many random \
-            samples.")),
-        ("discrepancy", "discrepancy", "Squared L2 star discrepancy of the samples of a frame: how unevenly they \
-            fill boxes that begin at 0. Left out where comparing all pairs would take long.".into()),
-        ("low", "power at low frequencies", format!("Mean power of the error at up to {LOW} cycles per pixel, \
-            without the mean itself.")),
-        ("direction", "power along y over x", "Power of frequencies within 15° of the y axis over that within 15° \
-            of the x axis, in rings from 0.15 to 0.25, 0.25 to 0.35 and 0.35 to 0.5 cycles per pixel: 1 where no \
-            direction is preferred.".into()),
-        ("cells", "spread of cells", "χ² of the counts in equal cells of the square (or parts of the interval) per \
-            degree of freedom: 1 is random, 0 is the same count in each.".into()),
-        ("bound", "bound", "What the optimiser minimises: the mean 1-Wasserstein distance between the samples that \
-            a filter holds, projected on random directions, and uniform ones. It bounds the filtered error of every \
-            function.".into()),
+        (
+            "ratio",
+            "ratio to white noise",
+            "The figure, divided by what independent uniform random numbers \
+            in a table of the same shape have in the mean (an exact expectation, not a draw): 1 is random, \
+            0 is no error, and half is worth twice the samples."
+                .into(),
+        ),
+        (
+            "filtered-error",
+            "filtered error",
+            format!(
+                "Squared error of the pixels after the filter in \
+            space and time, averaged over pixels and over {integrands} random test functions of each \
+            family (seed {seed}): edges of half-planes (half-space), smooth functions, discs (ball) and \
+            boxes; families count alike.{frames} The filter wraps at the borders of the table, as the \
+            table does."
+            ),
+        ),
+        (
+            "one-frame",
+            "one frame",
+            "The same with the filter in space alone: what is seen of a single \
+            frame."
+                .into(),
+        ),
+        (
+            "one-pixel",
+            "one pixel",
+            "The same without any filter. With one sample per pixel no table that \
+            fills the square evenly can be better than 1."
+                .into(),
+        ),
+        (
+            "bias",
+            "bias",
+            format!(
+                "Squared error of the mean over all samples of the table (or of a frame), \
+            with {of_bias} test functions of each family: what no filter takes away, compared with as many \
+            random samples."
+            ),
+        ),
+        (
+            "discrepancy",
+            "discrepancy",
+            "Squared L2 star discrepancy of the samples of a frame: how \
+            unevenly they fill boxes that begin at 0. Left out where comparing all pairs would take long."
+                .into(),
+        ),
+        (
+            "low",
+            "power at low frequencies",
+            format!(
+                "Mean power of the error at up to {LOW} cycles per \
+            pixel, without the mean itself."
+            ),
+        ),
+        (
+            "direction",
+            "power along y over x",
+            "Power of frequencies within 15° of the y axis over that \
+            within 15° of the x axis, in rings from 0.15 to 0.25, 0.25 to 0.35 and 0.35 to 0.5 cycles per \
+            pixel: 1 where no direction is preferred."
+                .into(),
+        ),
+        (
+            "cells",
+            "spread of cells",
+            "χ² of the counts in equal cells of the square (or parts of the \
+            interval) per degree of freedom: 1 is random, 0 is the same count in each."
+                .into(),
+        ),
+        (
+            "bound",
+            "bound",
+            "What the optimiser minimises: the mean 1-Wasserstein distance between the \
+                            samples that a filter holds, projected on random directions, and uniform ones. \
+                            It bounds the filtered error of every function."
+                .into(),
+        ),
     ];
     if !report.is_animated() {
         meanings.retain(|(id, _, _)| *id != "one-frame");

@@ -62,9 +62,9 @@ pub struct Arguments {
     /// Test integrands per family [default: 256, fewer for large tables so that a page takes some seconds].
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65536))]
     integrands: Option<u32>,
-    /// Slices per term of the bound, fewer for large subsets. The default leaves a standard error of about one
-    /// and a half percent.
-    #[arg(long, default_value_t = 2048, value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    /// Slices per term of the bound, fewer for large subsets. The default leaves a standard error of about a
+    /// percent.
+    #[arg(long, default_value_t = 4096, value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
     bound_slices: u32,
     #[command(flatten)]
     yardstick: Yardstick,
@@ -195,7 +195,7 @@ impl Column {
         let profiles = profiles.collect::<Result<_, _>>()?;
         let bound = measured::bound(&inspection, &dims)?;
         let beside = Beside::find(path, table);
-        let origin = Origin::new(path, &beside);
+        let origin = Origin::new(path, &beside, kernel);
         Ok(Self { label, beside, origin, groups, bound, panels, profiles, inspection })
     }
 

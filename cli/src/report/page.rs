@@ -52,7 +52,8 @@ pub fn html(report: &Report) -> Result<String, Failure> {
 
 /// A section with a heading.
 pub fn section(id: &str, heading: &str, inside: &Markup) -> Markup {
-    html! { section id=(id) aria-labelledby={ (id) "-heading" } { h2 id={ (id) "-heading" } { (heading) } (inside) } }
+    let named = format!("{id}-heading");
+    html! { section id=(id) aria-labelledby=(named) { h2 id=(named) { (heading) } (inside) } }
 }
 
 /// A picture with what it is of, and the pixels of the page that it takes across.
@@ -70,7 +71,9 @@ pub fn kind(heading: &str, figures: &[Figure], words: &Markup) -> Markup {
             h3 { (heading) }
             div.figures style=(format!("--across:calc({width}px + {}rem)", figures.len() - 1)) {
                 @for figure in figures {
-                    figure.plot[figure.is_plot] style=(format!("--width:{}px", figure.width)) { (figure.inside) }
+                    figure.plot[figure.is_plot] style=(format!("--width:{}px", figure.width)) {
+                        (figure.inside)
+                    }
                 }
             }
             div.words { (words) }
@@ -95,7 +98,7 @@ pub fn picture(label: &str, picture: &Grey, alt: &str, room: usize) -> Result<Fi
     let bytes = STANDARD.encode(picture.to_png()?);
     let inside = html! {
         img src={ "data:image/png;base64," (bytes) } width=(width) height=(height) alt=(alt);
-        figcaption { (label) }
+        figcaption { (breakable(label)) }
     };
     // A caption needs a place, however narrow the picture is.
     Ok(Figure { width: width.max(LEAST), inside, is_plot: false })
@@ -105,15 +108,20 @@ pub fn picture(label: &str, picture: &Grey, alt: &str, room: usize) -> Result<Fi
 pub fn points(label: &str, dots: &Dots, alt: &str, room: usize) -> Figure {
     let inside = html! {
         (chart::dots(dots, alt))
-        figcaption { (label) br; small { (dots.what) } }
+        figcaption { (breakable(label)) br; small { (dots.what) } }
     };
     Figure { width: room, inside, is_plot: false }
 }
 
 /// A plot of this width.
 pub fn plot(label: &str, plot: &Markup, width: usize) -> Figure {
-    let inside = html! { (plot) @if !label.is_empty() { figcaption { (label) } } };
+    let inside = html! { (plot) @if !label.is_empty() { figcaption { (breakable(label)) } } };
     Figure { width, inside, is_plot: true }
+}
+
+/// A name that may be broken behind its marks.
+pub fn breakable(name: &str) -> Markup {
+    html! { @for part in name.split_inclusive(['_', '-', '/', '.']) { (part) wbr; } }
 }
 
 /// What a narrow screen scrolls.

@@ -14,11 +14,13 @@ use crate::inspect::{filter, shape};
 pub fn introduction(report: &Report) -> Markup {
     html! {
         p.lead {
-            "A renderer takes the random numbers of each pixel from such a table. With independent random numbers, "
+            "A renderer takes the random numbers of each pixel from such a table. With independent random \
+             numbers, "
             em { "white noise" }
-            ", each pixel errs on its own, and the picture looks grainy. In a good table the errors of neighbouring \
-             pixels and frames cancel, so that whatever smooths the picture afterwards (the eye, a denoiser, \
-             temporal antialiasing) takes most of the error away. This page shows how much is left."
+            ", each pixel errs on its own, and the picture looks grainy. In a good table the errors of \
+             neighbouring pixels and frames cancel, so that whatever smooths the picture afterwards (the \
+             eye, a denoiser, temporal antialiasing) takes most of the error away. This page shows how \
+             much is left."
         }
         (table("the tables and their most important figures", &html! {
             thead { tr {
@@ -30,19 +32,24 @@ pub fn introduction(report: &Report) -> Markup {
             } }
             tbody { @for column in &report.columns { tr {
                 th scope="row" { (column.label) }
-                td { (shape(&column.inspection.table)) }
-                td { (filter(&column.inspection)) }
+                td.long { (typeset(&shape(&column.inspection.table))) }
+                td.long { (typeset(&filter(&column.inspection))) }
                 td.number { (figures::ratio(column.error())) }
                 td.number { (figures::ratio(column.shown().bias.table.mean.mean)) }
                 td.number { (figures::ratio(column.bound.ratio_to_white_noise)) }
             } } }
         }))
         p {
-            "Figures are ratios to white noise of the same shape: 1 is as good as independent random numbers, 0 is \
-             no error at all."
+            "Figures are ratios to white noise of the same shape: 1 is as good as independent random \
+             numbers, 0 is no error at all."
             @if let Some(words) = shown(report) { " " (words) }
         }
     }
+}
+
+/// What was written for terminals.
+fn typeset(words: &str) -> String {
+    words.replace("^2", "²").replace("-r", "−r").replace(" x ", " × ")
 }
 
 /// Which dimensions the pictures show, where there are others.
@@ -86,6 +93,8 @@ pub fn samples(report: &Report) -> Result<Markup, Failure> {
         })
         .collect()
     };
+    let block = of(|panels| &panels.block, "Samples of neighbouring pixels");
+    let frame = of(|panels| &panels.frame, "Samples of a frame");
     let cut = report.columns.iter().any(|column| column.panels.is_cut(&column.inspection.table));
     let one = report.columns.iter().any(|column| column.inspection.table.dims() == 1);
     let axes = html! {
@@ -98,15 +107,15 @@ pub fn samples(report: &Report) -> Result<Markup, Failure> {
         "The samples",
         &html! {
             (kind("First number of each pixel", &texture, &html! {
-                p { "The first frame as a texture: black is 0, white is 1. Blue noise has no clumps of dark or light \
-                     pixels; white noise has." }
+                p { "The first frame as a texture: black is 0, white is 1. Blue noise has no clumps of \
+                     dark or light pixels; white noise has." }
                 @if cut { p { "Only a corner of the larger frames is shown." } }
             }))
-            (kind("Samples of neighbouring pixels", &of(|panels| &panels.block, "Samples of neighbouring pixels"), &html! {
-                p { "Each point is a sample, a place in the square of all random numbers. What is smoothed together \
-                     should fill the square evenly, without holes and clusters. " (axes) }
+            (kind("Samples of neighbouring pixels", &block, &html! {
+                p { "Each point is a sample, a place in the square of all random numbers. What is smoothed \
+                     together should fill the square evenly, without holes and clusters. " (axes) }
             }))
-            (kind("Samples of a frame", &of(|panels| &panels.frame, "Samples of a frame"), &html! {
+            (kind("Samples of a frame", &frame, &html! {
                 p { "The whole should fill the square up to its sides." }
             }))
         },
@@ -138,13 +147,14 @@ pub fn edge(report: &Report) -> Result<Markup, Failure> {
         "The error of an edge",
         &html! {
             (kind("Before the filter", &before, &html! {
-                p { "Each pixel of the last frame asks with its own samples which share of the square lies on one side \
-                     of an edge, as a renderer asks which part of a light is hidden. Grey is no error, dark is too \
-                     little, light is too much; black and white are two standard deviations of white noise." }
+                p { "Each pixel of the last frame asks with its own samples which share of the square lies \
+                     on one side of an edge, as a renderer asks which part of a light is hidden. Grey is \
+                     no error, dark is too little, light is too much; black and white are two standard \
+                     deviations of white noise." }
             }))
             (kind("After the filter", &after, &html! {
-                p { "What the filter leaves of it: the flatter the grey, the better. Black and white are three standard \
-                     deviations of what it leaves of white noise." }
+                p { "What the filter leaves of it: the flatter the grey, the better. Black and white are \
+                     three standard deviations of what it leaves of white noise." }
             }))
         },
     ))
@@ -172,11 +182,12 @@ pub fn spectra(report: &Report) -> Result<Markup, Failure> {
         "Frequencies of the error",
         &html! {
             (kind("In the picture: x and y", &xy, &html! {
-                p { "How much of the error changes slowly across the picture (in the middle, where eyes and filters see \
-                     it) and how much from pixel to pixel (at the border, where they don't). Black is none, grey as \
-                     much as white noise has, white twice as much or more: a dark middle is blue noise." }
-                p { "A round dark disc prefers no direction. Power along y over that along x, in rings from 0.15, 0.25 \
-                     and 0.35 to 0.5 cycles per pixel: "
+                p { "How much of the error changes slowly across the picture (in the middle, where eyes \
+                     and filters see it) and how much from pixel to pixel (at the border, where they \
+                     don't). Black is none, grey as much as white noise has, white twice as much or more: \
+                     a dark middle is blue noise." }
+                p { "A round dark disc prefers no direction. Power along y over that along x, in rings \
+                     from 0.15, 0.25 and 0.35 to 0.5 cycles per pixel: "
                     @for (at, column) in report.columns.iter().enumerate() {
                         @if at > 0 { "; " }
                         @if report.columns.len() > 1 { (column.label) " " }
@@ -187,8 +198,9 @@ pub fn spectra(report: &Report) -> Result<Markup, Failure> {
             }))
             @if !xt.is_empty() {
                 (kind("Over time: x and t", &xt, &html! {
-                    p { "Along a row of pixels (to the right) and over the frames (down); zero is in the middle of \
-                         either. The dark middle is error that a filter in space and time takes away." }
+                    p { "Along a row of pixels (to the right) and over the frames (down); zero is in the \
+                         middle of either. The dark middle is error that a filter in space and time takes \
+                         away." }
                 }))
             }
             @if has_rings {
@@ -198,8 +210,8 @@ pub fn spectra(report: &Report) -> Result<Markup, Failure> {
                             path class={ "line l" (chart::number(at)) } d="M1 5H27" {}
                         } " " (label) }
                     } }
-                    p { "The same power, averaged over the directions of the picture; 1 is white noise’s, and each line \
-                         of the grid is a tenth of the one above." }
+                    p { "The same power, averaged over the directions of the picture; 1 is white noise’s, \
+                         and each line of the grid is a tenth of the one above." }
                 }))
             }
         },
@@ -208,18 +220,21 @@ pub fn spectra(report: &Report) -> Result<Markup, Failure> {
 
 /// Single coordinates and pairs, up to the faces.
 pub fn coordinates(report: &Report) -> Result<Markup, Failure> {
-    let most = report.columns.iter().map(|column| column.profiles.len()).max().unwrap_or(0);
-    let plots = |at: usize| -> Vec<Figure> {
-        let of = report.columns.iter().filter_map(|column| Some((&column.label, column.profiles.get(at)?)));
-        of.map(|(label, profile)| {
-            let face = profile.marginal.faces[2];
-            let alt = format!(
-                "Density of dimension {at} of {label}; within {} of the faces {:.2}",
-                face.within, face.density
-            );
-            plot(label, &chart::marginal(profile, &alt), 340)
-        })
-        .collect()
+    let figure = |column: &Column, dim: usize| {
+        let profile = column.profiles.get(dim)?;
+        let face = profile.marginal.faces[2];
+        let alt = format!(
+            "Density of dimension {dim} of {}; within {} of the faces {:.2}",
+            column.label, face.within, face.density
+        );
+        let label = format!("{}, dimension {dim}", column.label);
+        Some(plot(&label, &chart::marginal(profile, &alt), 300))
+    };
+    // Tables stand side by side, below them their second dimensions.
+    let of_dim = |dim: usize| report.columns.iter().filter_map(move |column| figure(column, dim));
+    let plots: Vec<Vec<Figure>> = match report.columns.as_slice() {
+        [one] => vec![(0..one.profiles.len()).filter_map(|dim| figure(one, dim)).collect()],
+        _ => (0..2).map(|dim| of_dim(dim).collect()).collect(),
     };
     let density = pictures(
         report,
@@ -230,15 +245,18 @@ pub fn coordinates(report: &Report) -> Result<Markup, Failure> {
         "coordinates",
         "Evenness, up to the faces",
         &html! {
-            p { "A renderer that gets too few numbers near 0 or 1 is wrong everywhere, and no filter helps. Values of each \
-                 dimension are counted in bins that are fine next to the faces of the cube: 1 is even, 2 and more are at \
-                 the top. Two thirds of the bins of independent random numbers end within the band." }
-            @for at in 0..most { (kind(&format!("Dimension {at}"), &plots(at), &html! {})) }
+            p { "A renderer that gets too few numbers near 0 or 1 is wrong everywhere, and no filter \
+                 helps. Values of each dimension are counted in bins that are fine next to the faces of \
+                 the cube: 1 is even, 2 and more are at the top. Two thirds of the bins of independent \
+                 random numbers end within the band." }
+            @for (at, plots) in plots.iter().enumerate().filter(|(_, plots)| !plots.is_empty()) {
+            (kind(["Each dimension", "Second dimension"][at], plots, &html! {}))
+        }
             (figures::faces(report))
             @if !density.is_empty() {
                 (kind("Cells of the square", &density, &html! {
-                    p { "All samples, counted in equal cells: black is none, grey the mean, white twice the mean or more. \
-                         The first dimension goes to the right, the second up." }
+                    p { "All samples, counted in equal cells: black is none, grey the mean, white twice \
+                         the mean or more. The first dimension goes to the right, the second up." }
                 }))
             }
         },
@@ -251,8 +269,9 @@ pub fn figures(report: &Report) -> Markup {
         "figures",
         "Figures",
         &html! {
-            p { "Ratios to white noise of the same shape, whose own figure is 1 by definition; ± is the standard error \
-                 that the choice of integrands or slices leaves. What each line means is said "
+            p { "Ratios to white noise of the same shape, whose own figure is 1 by definition; ± is the \
+                 standard error that the choice of integrands or slices leaves. What each line means is \
+                 said "
                 a href="#meanings" { "below" } "." }
             (figures::all(report))
         },
