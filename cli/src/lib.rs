@@ -7,6 +7,7 @@
 //! | [`report`] | a page about one table or several, or a sheet of their pictures |
 //! | [`import`] | a sample table of somebody else's file |
 //! | [`points`] | point sets: labelled classes, progressive sequences, stipplings |
+//! | [`plot`] | curves of the logs of runs |
 //!
 //! # Exit codes
 //!
@@ -38,7 +39,9 @@ mod flags;
 pub mod import;
 pub mod inspect;
 pub mod interrupt;
+pub mod log;
 pub mod output;
+pub mod plot;
 pub mod points;
 pub mod progress;
 pub mod report;
@@ -91,6 +94,7 @@ enum Verb {
     Report(report::Arguments),
     Import(import::Arguments),
     Points(points::Arguments),
+    Plot(plot::Arguments),
 }
 
 const TOUR: &str = "\
@@ -109,6 +113,8 @@ A tour:
       three sets of points; each of them, and all their unions, are uniform
   fsot points stipple --picture face.png --count 20000 --out dots.png
       a picture in dots
+  fsot table --config table.json --seed 8 --log run.csv
+      as that table was made but for the seed, with a log of how it went; fsot plot run.csv draws it
   fsot table --json --quiet
       one line of JSON for a script, and no progress bar; so does every verb
 'fsot VERB --help' says more about each.
@@ -127,6 +133,7 @@ pub fn main() -> ExitCode {
         Verb::Report(arguments) => report::run(&arguments),
         Verb::Import(arguments) => import::run(&arguments),
         Verb::Points(arguments) => points::run(&arguments),
+        Verb::Plot(arguments) => plot::run(&arguments),
     };
     match ended {
         Ok(ended) => ended.into(),

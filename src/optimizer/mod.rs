@@ -2,12 +2,14 @@
 
 mod budget;
 mod frame;
+mod plan;
 mod record;
 mod report;
 mod run;
 
 use std::ops::ControlFlow;
 
+pub use self::plan::Plan;
 pub use self::report::{RunReport, SliceStep, StepReport};
 use crate::classes::Demand;
 use crate::config::{Config, Role, Until, check_step};

@@ -48,7 +48,7 @@ impl Optimizer {
     ) -> Result<RunReport, ConfigError> {
         // A closure that panicked in an earlier run may have left one behind.
         self.sweeper = None;
-        let work = match self.plan(until) {
+        let work = match self.work_of(until) {
             Ok(work) => work,
             Err(error) => {
                 self.sweeper = None;

@@ -29,6 +29,7 @@ use self::part::{Pull, TablePart};
 use self::walk::Walker;
 use crate::config::{Descent, Role};
 use crate::objective::Objective;
+use crate::table::extent::bytes_of;
 
 /// What a step does.
 #[derive(Clone, Copy, Debug)]
@@ -83,6 +84,23 @@ impl Slices {
             pull: Pull::default(),
             walker: Walker::new(descent, coordinates),
         }
+    }
+
+    /// Bytes of all buffers that grow with the table.
+    pub(crate) fn bytes(&self) -> usize {
+        let Self { orders, batches, workers, pull, walker } = self;
+        let scratch = |scratch: &Mutex<Option<Scratch>>| {
+            scratch.lock().unwrap_or_else(PoisonError::into_inner).as_ref().map_or(0, Scratch::bytes)
+        };
+        orders.iter().map(VisitOrder::bytes).sum::<usize>()
+            + batches.descended.bytes()
+            + batches.balanced.bytes()
+            + workers.scratch.iter().map(scratch).sum::<usize>()
+            + workers.large.bytes()
+            + workers.alone.bytes()
+            + bytes_of(&pull.sums)
+            + bytes_of(&pull.hits)
+            + walker.bytes()
     }
 
     /// Gives buffers back: they are as large as the largest subset, and copies of the table.

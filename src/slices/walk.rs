@@ -3,6 +3,7 @@
 use super::part::TablePart;
 use crate::config::Descent;
 use crate::table::domain::Domain;
+use crate::table::extent::bytes_of;
 
 /// Moves the samples of a part by `rate` times their mean pull and clears the pull. `domains` has one entry
 /// per dimension.
@@ -30,6 +31,11 @@ pub(crate) enum Walk {
 }
 
 impl Walker {
+    /// Bytes that it holds.
+    pub(super) fn bytes(&self) -> usize {
+        bytes_of(&self.first) + bytes_of(&self.second)
+    }
+
     pub(crate) fn new(descent: Descent, coordinates: usize) -> Self {
         let (first, second) = match descent {
             Descent::Barycentric { .. } => (0, 0),

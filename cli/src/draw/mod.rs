@@ -1,4 +1,5 @@
 //! Pictures.
 
+pub mod chart;
 pub mod page;
 pub mod raster;
