@@ -207,6 +207,13 @@ pub fn meanings(report: &Report) -> Vec<(&'static str, &'static str, String)> {
                 .into(),
         ),
         (
+            "filter",
+            "filter",
+            "Weights of the pixels at a distance r, and of the past frames: perceptual:60 is the eye at 60 \
+             frames per second, ema:0.1 temporal antialiasing that keeps nine tenths of its history."
+                .into(),
+        ),
+        (
             "filtered-error",
             "filtered error",
             format!(

@@ -62,12 +62,12 @@ impl Panels {
             density: density(table, dims)?,
         })
     }
+}
 
-    /// Whether frames are larger than their pictures.
-    pub fn is_cut(&self, table: &SampleTable) -> bool {
-        let Extent { height, width, .. } = table.extent();
-        [self.edge.before.width(), self.edge.before.height()] != [width, height]
-    }
+/// Whether frames are larger than their picture.
+pub fn is_cut(picture: &Grey, table: &SampleTable) -> bool {
+    let Extent { height, width, .. } = table.extent();
+    [picture.width(), picture.height()] != [width, height]
 }
 
 /// Samples of a block of pixels: as many as can be told apart.

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::figures;
 use super::page::{Figure, kind, picture, plot, points, room, section, table};
-use super::panels::Panels;
+use super::panels::{self, Panels};
 use super::{Column, Report, chart};
 use crate::Failure;
 use crate::draw::raster::Grey;
@@ -25,7 +25,7 @@ pub fn introduction(report: &Report) -> Markup {
         (table("the tables and their most important figures", &html! {
             thead { tr {
                 th scope="col" { "table" } th scope="col" { "shape" }
-                th scope="col" { "filter" }
+                th scope="col" { a href="#filter" { "filter" } }
                 th.number scope="col" { a href="#filtered-error" { "filtered error" } }
                 th.number scope="col" { a href="#bias" { "bias" } }
                 th.number scope="col" { a href="#bound" { "bound" } }
@@ -67,6 +67,12 @@ fn all(report: &Report) -> impl Iterator<Item = (&str, &Panels, Option<&Column>)
     std::iter::once((WHITE, &report.white, None)).chain(tables)
 }
 
+/// Says so where pictures leave out a part of the frame.
+fn is_cut(report: &Report, pick: fn(&Panels) -> &Grey) -> Markup {
+    let is_cut = |column: &Column| panels::is_cut(pick(&column.panels), &column.inspection.table);
+    html! { @if report.columns.iter().any(is_cut) { p { "Only a corner of the larger frames is shown." } } }
+}
+
 /// One picture of each.
 fn pictures(
     report: &Report,
@@ -95,7 +101,7 @@ pub fn samples(report: &Report) -> Result<Markup, Failure> {
     };
     let block = of(|panels| &panels.block, "Samples of neighbouring pixels");
     let frame = of(|panels| &panels.frame, "Samples of a frame");
-    let cut = report.columns.iter().any(|column| column.panels.is_cut(&column.inspection.table));
+    let cut = is_cut(report, |panels| &panels.texture);
     let one = report.columns.iter().any(|column| column.inspection.table.dims() == 1);
     let axes = html! {
         "The first dimension goes to the right, the second up"
@@ -109,7 +115,7 @@ pub fn samples(report: &Report) -> Result<Markup, Failure> {
             (kind("First number of each pixel", &texture, &html! {
                 p { "The first frame as a texture: black is 0, white is 1. Blue noise has no clumps of \
                      dark or light pixels; white noise has." }
-                @if cut { p { "Only a corner of the larger frames is shown." } }
+                (cut)
             }))
             (kind("Samples of neighbouring pixels", &block, &html! {
                 p { "Each point is a sample, a place in the square of all random numbers. What is smoothed \
@@ -151,6 +157,7 @@ pub fn edge(report: &Report) -> Result<Markup, Failure> {
                      on one side of an edge, as a renderer asks which part of a light is hidden. Grey is \
                      no error, dark is too little, light is too much; black and white are two standard \
                      deviations of white noise." }
+                (is_cut(report, |panels| &panels.edge.before))
             }))
             (kind("After the filter", &after, &html! {
                 p { "What the filter leaves of it: the flatter the grey, the better. Black and white are \
