@@ -90,8 +90,10 @@ pub fn radial(lines: &[(&str, &[RadialBin])], half_power: f64) -> Markup {
     let curves: Vec<Vec<RadialBin>> = lines.iter().map(|(_, bins)| inside(bins)).collect();
     let powers = curves.iter().flatten().map(|bin| bin.power).filter(|power| *power > 0.0);
     let least = powers.fold(0.5, f64::min).log10().floor().max(-4.0);
-    let plot = Plot { size: [520.0, 300.0], x: [0.0, 0.5], y: [least, 0.5] };
-    let ticks = (least as i32..=0).map(|exponent| (f64::from(exponent), 10_f64.powi(exponent).to_string()));
+    let most = curves.iter().flatten().map(|bin| bin.power).fold(3.0, f64::max).log10().min(4.0);
+    let plot = Plot { size: [520.0, 300.0], x: [0.0, 0.5], y: [least, most] };
+    let ticks =
+        (least as i32..=most as i32).map(|exponent| (f64::from(exponent), 10_f64.powi(exponent).to_string()));
     let alt = format!(
         "Power of the error over frequency, from 0 to half a cycle per pixel: {}",
         lines.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ")

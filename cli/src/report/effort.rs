@@ -9,7 +9,7 @@ use crate::Failure;
 use crate::inspect::Effort;
 
 /// Values of integrands and terms of transforms that some seconds of a core are enough for.
-const AFFORDABLE: usize = 1_200_000_000;
+const AFFORDABLE: usize = 2_000_000_000;
 
 /// Test integrands per family of a table that is small enough.
 const USUAL: usize = 256;
@@ -20,7 +20,7 @@ const FEWEST: usize = 8;
 const FEW: usize = 2;
 
 /// Frames and rows over which spectra are averaged.
-const SLABS: [usize; 2] = [4, 16];
+const SLABS: [usize; 2] = [2, 8];
 
 /// Pairs of samples whose comparison takes about a second.
 const MOST_PAIRS: u64 = 1_000_000_000;
@@ -45,7 +45,7 @@ pub fn of(
     let filtered = some.map_or(frames, |few| few * seen.len());
     let families = 4;
     // Per pixel and integrand: values at its samples, and a transform or two.
-    let per_pixel = |dims: usize| spp * (1 + dims) + 12;
+    let per_pixel = |dims: usize| 2 * spp * (1 + dims) + 12;
     let groups = DimensionGroup::pairs_and_whole(table.dims());
     let of_pixels = groups.iter().map(|group| families * per_pixel(group.dims.len())).sum::<usize>();
     let affordable = |frames: usize| AFFORDABLE / (frames * height * width).saturating_mul(of_pixels).max(1);

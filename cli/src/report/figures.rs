@@ -7,22 +7,25 @@ use super::page::table;
 use super::{Column, Report};
 use crate::inspect::figures::{GroupFigures, LOW};
 
-/// To three places, or to three digits above 1.
+/// To three places, or to fewer of large numbers.
 pub fn ratio(value: f64) -> String {
     match value.abs() {
         size if size.is_nan() => "–".into(),
         size if size >= 999.5 => format!("{value:.2e}"),
         size if size >= 99.95 => format!("{value:.0}"),
-        size if size >= 9.995 => format!("{value:.1}"),
-        size if size >= 0.9995 => format!("{value:.2}"),
+        size if size >= 9.9995 => format!("{value:.1}"),
         _ => format!("{value:.3}"),
     }
 }
 
-/// The three rings.
-pub fn anisotropy(figures: &GroupFigures) -> String {
-    let rings = figures.spectra.anisotropy().map(|ring| ratio(ring.along_y_over_along_x));
-    rings.join(", ")
+fn uncertainty(error: f64) -> String {
+    if error < 0.0005 { "<0.001".into() } else { ratio(error) }
+}
+
+/// The three rings; small tiles lack some.
+pub fn anisotropy(figures: &GroupFigures) -> Option<String> {
+    let rings = figures.spectra.anisotropy().map(|ring| ring.along_y_over_along_x);
+    rings.iter().all(|ring| ring.is_finite()).then(|| rings.map(ratio).join(", "))
 }
 
 /// A cell of the table.
@@ -76,7 +79,9 @@ fn lines(families: impl Iterator<Item = String>, animated: bool) -> Vec<Line> {
         Line::new("bias", "bias of a frame", |of| of.bias.frame.mean.into()),
         Line::new("discrepancy", "discrepancy of a frame", move |of| number(of.discrepancy)),
         Line::new("low", "power at low frequencies", move |of| number(of.low)),
-        Line::new("direction", "power along y over x", |of| Cell::Plain(anisotropy(of))),
+        Line::new("direction", "power along y over x", |of| {
+            anisotropy(of).map_or(Cell::Missing, Cell::Plain)
+        }),
         Line::new("cells", "spread of cells", move |of| number(spread(of))),
     ];
     // Of a single frame these repeat what is said already.
@@ -149,7 +154,8 @@ fn cell(cell: &Cell) -> Markup {
         Cell::Ratio(value, error) => html! {
             td.number.bar style=(format!("--share:{:.1}%", 100.0 * value.clamp(0.0, 1.0))) {
                 (ratio(*value))
-                @if error.is_finite() { small { " ± " (format!("{error:.3}")) } }
+                // Also where there is none: values stay below each other.
+                small.error { @if error.is_finite() { "± " (uncertainty(*error)) } }
             }
         },
     }

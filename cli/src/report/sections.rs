@@ -193,15 +193,7 @@ pub fn spectra(report: &Report) -> Result<Markup, Failure> {
                      and filters see it) and how much from pixel to pixel (at the border, where they \
                      don't). Black is none, grey as much as white noise has, white twice as much or more: \
                      a dark middle is blue noise." }
-                p { "A round dark disc prefers no direction. Power along y over that along x, in rings \
-                     from 0.15, 0.25 and 0.35 to 0.5 cycles per pixel: "
-                    @for (at, column) in report.columns.iter().enumerate() {
-                        @if at > 0 { "; " }
-                        @if report.columns.len() > 1 { (column.label) " " }
-                        (figures::anisotropy(column.shown()))
-                    }
-                    ". White noise has 1."
-                }
+                (direction(report))
             }))
             @if !xt.is_empty() {
                 (kind("Over time: x and t", &xt, &html! {
@@ -225,6 +217,23 @@ pub fn spectra(report: &Report) -> Result<Markup, Failure> {
     ))
 }
 
+/// Whether the error prefers a direction, where tiles are large enough to have some.
+fn direction(report: &Report) -> Markup {
+    let known =
+        report.columns.iter().filter_map(|column| Some((column, figures::anisotropy(column.shown())?)));
+    let known: Vec<(&Column, String)> = known.collect();
+    html! { @if !known.is_empty() { p {
+        "A round dark disc prefers no direction. Power along y over that along x, in rings from 0.15, 0.25 \
+         and 0.35 to 0.5 cycles per pixel: "
+        @for (at, (column, rings)) in known.iter().enumerate() {
+            @if at > 0 { "; " }
+            @if report.columns.len() > 1 { (column.label) " " }
+            (rings)
+        }
+        ". White noise has 1."
+    } } }
+}
+
 /// Single coordinates and pairs, up to the faces.
 pub fn coordinates(report: &Report) -> Result<Markup, Failure> {
     let figure = |column: &Column, dim: usize| {
@@ -239,9 +248,9 @@ pub fn coordinates(report: &Report) -> Result<Markup, Failure> {
     };
     // Tables stand side by side, below them their second dimensions.
     let of_dim = |dim: usize| report.columns.iter().filter_map(move |column| figure(column, dim));
-    let plots: Vec<Vec<Figure>> = match report.columns.as_slice() {
-        [one] => vec![(0..one.profiles.len()).filter_map(|dim| figure(one, dim)).collect()],
-        _ => (0..2).map(|dim| of_dim(dim).collect()).collect(),
+    let (headings, plots): (_, Vec<Vec<Figure>>) = match report.columns.as_slice() {
+        [one] => (&["Each dimension"][..], vec![(0..2).filter_map(|dim| figure(one, dim)).collect()]),
+        _ => (&["First dimension", "Second dimension"], (0..2).map(|dim| of_dim(dim).collect()).collect()),
     };
     let density = pictures(
         report,
@@ -257,7 +266,7 @@ pub fn coordinates(report: &Report) -> Result<Markup, Failure> {
                  the cube: 1 is even, 2 and more are at the top. Two thirds of the bins of independent \
                  random numbers end within the band." }
             @for (at, plots) in plots.iter().enumerate().filter(|(_, plots)| !plots.is_empty()) {
-            (kind(["Each dimension", "Second dimension"][at], plots, &html! {}))
+            (kind(headings[at], plots, &html! {}))
         }
             (figures::faces(report))
             @if !density.is_empty() {
