@@ -4,7 +4,7 @@
 //! A row is written at once and as a whole, behind a header: whoever reads the file while the run goes on, or
 //! after it was killed, finds rows that are complete. Rows become rarer as the run goes on, so that one of a
 //! minute has some 400 of them and one of a day some 800. What costs time is only measured as far as all of
-//! it together stays below [`SHARE`] of the run; the steps are the same ones with a log and without.
+//! it together takes some 4 % of the run; the steps are the same ones with a log and without.
 
 use std::fs::File;
 use std::io::{self, Write};
@@ -22,8 +22,9 @@ use crate::Failure;
 pub const COLUMNS: [&str; 8] =
     ["step", "steps", "seconds", "rate", "displacement", "loss", "filtered_error", "bias"];
 
-/// Share of the run that measuring may take.
-const SHARE: f64 = 0.03;
+/// Shares of the run that the loss, and what the table is worth, may take to measure.
+const LOSS_SHARE: f64 = 0.01;
+const WORTH_SHARE: f64 = 0.03;
 /// Time between rows, as share of the time of the run, and at the least.
 const SPACING: f64 = 0.02;
 const LEAST_SPACING: Duration = Duration::from_millis(10);
@@ -58,26 +59,24 @@ struct Worth {
 #[derive(Debug)]
 struct Pacer {
     next: Duration,
-    /// Of the last time, or a guess.
-    cost: Duration,
+    share: f64,
     spent: Duration,
 }
 
 impl Pacer {
-    fn new(guess: Duration) -> Self {
-        Self { next: Duration::ZERO, cost: guess, spent: Duration::ZERO }
+    /// The first time is when a measurement that takes as long as this guess is its share.
+    fn new(share: f64, guess: Duration) -> Self {
+        Self { next: guess.div_f64(share), share, spent: Duration::ZERO }
     }
 
-    /// Measures if it is time, and if no more than half the share of the run goes to it.
+    /// Measures if it is time, and if what it has taken is no more than its share of the run.
     fn measure<T>(&mut self, elapsed: Duration, measure: impl FnOnce() -> T) -> Option<T> {
-        let allowed = elapsed.mul_f64(0.5 * SHARE);
-        if elapsed < self.next || self.spent + self.cost > allowed {
+        if elapsed < self.next || self.spent > elapsed.mul_f64(self.share) {
             return None;
         }
         let begin = Instant::now();
         let measured = measure();
-        self.cost = begin.elapsed();
-        self.spent += self.cost;
+        self.spent += begin.elapsed();
         self.next = elapsed.mul_f64(1.0 + MEASURE_SPACING);
         Some(measured)
     }
@@ -91,14 +90,14 @@ impl Log {
     pub fn new(path: &Path, config: &Config) -> Result<Self, Failure> {
         let worth = Worth::of(config).map_err(Failure::from)?;
         // Some tens of nanoseconds for a site and an integrand.
-        let guess = Duration::from_nanos(1_000 * config.extent.sites() as u64);
+        let guess = Duration::from_nanos(500 * config.extent.sites() as u64);
         Ok(Self {
             out: None,
             path: path.to_owned(),
             fault: None,
             worth,
-            losses: Pacer::new(Duration::from_millis(1)),
-            worths: Pacer::new(guess),
+            losses: Pacer::new(LOSS_SHARE, Duration::from_millis(2)),
+            worths: Pacer::new(WORTH_SHARE, guess),
             next_row: Duration::ZERO,
             steps: 0,
         })

@@ -39,12 +39,8 @@ pub struct Arguments {
 }
 
 /// Figures that get a panel, by the name of their column.
-const FIGURES: [(&str, &str); 4] = [
-    ("filtered_error", "filtered error / white noise"),
-    ("bias", "bias / white noise"),
-    ("loss", "loss"),
-    ("displacement", "displacement"),
-];
+const FIGURES: [(&str, &str); 3] =
+    [("filtered_error", "filtered error / white noise"), ("loss", "loss"), ("displacement", "displacement")];
 const PANEL: (u32, u32) = (480, 340);
 /// Letters of a name that are shown, and how wide one is.
 const MOST_LETTERS: usize = 24;
@@ -133,13 +129,11 @@ fn draw(svg: &mut String, logs: &[Log], panels: &[&(&str, &str)]) -> Result<(), 
     let labels: Vec<String> = logs.iter().map(Log::label).collect();
     let longest = labels.iter().map(|label| label.chars().count()).max().unwrap_or(0);
     let right = 20.0 + LETTER_PX * longest as f64;
-    let columns = panels.len().min(2);
-    let rows = panels.len().div_ceil(columns);
     let (width, height) = (PANEL.0 + right as u32, PANEL.1);
-    let root = SVGBackend::with_string(svg, (width * columns as u32, height * rows as u32));
+    let root = SVGBackend::with_string(svg, (width * panels.len() as u32, height));
     let root = root.into_drawing_area();
     root.fill(&WHITE)?;
-    for (panel, (column, title)) in root.split_evenly((rows, columns)).iter().zip(panels) {
+    for (panel, (column, title)) in root.split_evenly((1, panels.len())).iter().zip(panels) {
         let curves: Vec<Vec<(f64, f64)>> = logs.iter().map(|log| log.curve(column)).collect();
         let points = || curves.iter().flatten();
         let frame = Frame::around(
@@ -157,8 +151,8 @@ fn draw(svg: &mut String, logs: &[Log], panels: &[&(&str, &str)]) -> Result<(), 
             for &at in line.iter().filter(|_| line.len() <= 40) {
                 panel.draw(&Circle::new(at, 2, colour.filled()))?;
             }
-            if let Some(&(x, y)) = line.last() {
-                ends.push((x + 8, y, label.as_str(), *colour));
+            if let Some(&(_, y)) = line.last() {
+                ends.push((frame.rightmost() + 8, y, label.as_str(), *colour));
             }
         }
         spread(&mut ends, frame.lowest() - TEXT_PX / 2);

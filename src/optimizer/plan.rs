@@ -33,8 +33,8 @@ pub struct Plan {
     /// Seconds that the run takes here, as far as a calibration of some tenths of a second tells: within some
     /// tenths of that, if nothing else comes to run on this machine.
     pub seconds: f64,
-    /// Bytes that the run holds at its peak: the table and all buffers that grow with it, and some MB for the
-    /// tabulated laws and the threads. Targets other than the cube are not counted.
+    /// Bytes that the run holds at its peak, within a quarter and 3 MB: the table and all buffers that grow
+    /// with it, tabulated laws, and what threads need. Targets other than the cube are not counted.
     pub bytes: usize,
 }
 

@@ -64,6 +64,11 @@ impl Frame {
         (TOP + self.height) as i32
     }
 
+    /// The rightmost pixel of a curve.
+    pub fn rightmost(&self) -> i32 {
+        (LEFT + self.width) as i32
+    }
+
     /// Draws a title, axes and a grid.
     ///
     /// # Errors

@@ -1,9 +1,13 @@
 //! `fsot` as a user meets it: files, words, exit codes.
 
+mod configurations;
 mod import;
+mod kernels;
+mod logs;
 mod mistakes;
 mod outputs;
 mod pictures;
+mod plans;
 mod points;
 mod printing;
 mod runs;
