@@ -3,7 +3,8 @@
 //! | verb | makes |
 //! |---|---|
 //! | [`table`] | a sample table, and its metadata |
-//! | [`inspect`] | figures and a page of pictures of a table |
+//! | [`inspect`] | figures of a table |
+//! | [`report`] | a page about one table or several, or a sheet of their pictures |
 //! | [`import`] | a sample table of somebody else's file |
 //! | [`points`] | point sets: labelled classes, progressive sequences, stipplings |
 //! | [`plot`] | curves of the logs of runs |
@@ -17,7 +18,7 @@
 //! | 2 | the command line cannot be understood |
 //! | 3 | SIGINT, SIGTERM or SIGHUP ended the run early; what it had reached is written, and says so |
 //!
-//! A signal before the first step, or during `fsot inspect`, finds nothing to keep and kills the process as
+//! A signal before the first step, or during `fsot inspect` and `fsot report`, finds nothing to keep and kills the process as
 //! signals do (130, 143 and 129 to a shell). A reader of the output who goes away (`| head -1`) is no
 //! failure.
 //!
@@ -25,7 +26,7 @@
 //!
 //! [`interrupt`] for signals, [`checkpoint`] for runs that may be killed, [`output`] for files that are
 //! checked before the work, [`progress`] for bars, [`console`] for what is printed, [`run`] for a run with
-//! all of them, [`draw`] for pages, [`temporal`] for kernels as they are written on a command line.
+//! all of them, [`draw`] for pictures, [`temporal`] for kernels as they are written on a command line.
 
 use std::process::ExitCode;
 
@@ -44,6 +45,7 @@ pub mod output;
 pub mod plot;
 pub mod points;
 pub mod progress;
+pub mod report;
 pub mod run;
 pub mod table;
 pub mod temporal;
@@ -90,6 +92,7 @@ struct Command {
 enum Verb {
     Table(table::Arguments),
     Inspect(inspect::Arguments),
+    Report(report::Arguments),
     Import(import::Arguments),
     Points(points::Arguments),
     Plot(plot::Arguments),
@@ -100,7 +103,9 @@ A tour:
   fsot table
       64 x 64 pixels and 10 frames in a second, to table.npy and table.json
   fsot inspect table.npy
-      what the table is worth: figures, and table.inspect.png to look at
+      what the table is worth, in figures
+  fsot report table.npy
+      the same to look at, in report.html; several tables stand side by side
   fsot table --frames 1 --spp 4 --dims 4 --seconds 10 --out render.npy
       a still table for a renderer that takes 4 samples of 4 numbers per pixel
   fsot import mask.npy --out table.npy
@@ -126,6 +131,7 @@ pub fn main() -> ExitCode {
     let ended = match Command::parse().verb {
         Verb::Table(arguments) => table::run(&arguments),
         Verb::Inspect(arguments) => inspect::run(&arguments),
+        Verb::Report(arguments) => report::run(&arguments),
         Verb::Import(arguments) => import::run(&arguments),
         Verb::Points(arguments) => points::run(&arguments),
         Verb::Plot(arguments) => plot::run(&arguments),

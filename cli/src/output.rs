@@ -76,7 +76,8 @@ pub fn has_ending(path: &Path, ending: &str) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(ending))
 }
 
-fn cannot_write(flag: &str, path: &Path, error: &io::Error) -> Failure {
+/// That a file cannot be written, in one sentence.
+pub(crate) fn cannot_write(flag: &str, path: &Path, error: &io::Error) -> Failure {
     format!("cannot write {}: {error}; choose another {flag}", path.display()).into()
 }
 
