@@ -4,6 +4,8 @@
 //! is a rule ([`options`]) and a function that writes one file.
 
 mod encode;
+#[cfg(feature = "image")]
+mod exr;
 mod ktx2;
 mod options;
 mod parts;
@@ -122,6 +124,8 @@ fn write(out: &mut (impl Write + Seek), format: Format, values: &Encoded, part: 
     match format {
         #[cfg(feature = "image")]
         Format::Atlas | Format::Slices => png::write(out, values, part),
+        #[cfg(feature = "image")]
+        Format::Exr | Format::ExrLayers => exr::write(out, values, part),
         Format::Ktx2 => ktx2::write(out, values, part),
     }
 }

@@ -25,6 +25,13 @@ pub enum Format {
     Slices,
     /// A KTX 2.0 file: a 2-D texture, or an array of them, one layer per frame.
     Ktx2,
+    /// One OpenEXR picture per frame.
+    #[cfg(feature = "image")]
+    Exr,
+    /// One OpenEXR file, with a layer per frame.
+    #[cfg(feature = "image")]
+    #[serde(rename = "exr-layers")]
+    ExrLayers,
 }
 
 /// The numbers that a file holds.
@@ -128,9 +135,13 @@ impl Format {
         #[cfg(feature = "image")]
         Self::Slices,
         Self::Ktx2,
+        #[cfg(feature = "image")]
+        Self::Exr,
+        #[cfg(feature = "image")]
+        Self::ExrLayers,
     ];
 
-    /// `atlas`, `slices`, `ktx2`.
+    /// `atlas`, `slices`, `ktx2`, `exr` or `exr-layers`.
     pub fn name(self) -> &'static str {
         match self {
             #[cfg(feature = "image")]
@@ -138,6 +149,10 @@ impl Format {
             #[cfg(feature = "image")]
             Self::Slices => "slices",
             Self::Ktx2 => "ktx2",
+            #[cfg(feature = "image")]
+            Self::Exr => "exr",
+            #[cfg(feature = "image")]
+            Self::ExrLayers => "exr-layers",
         }
     }
 
@@ -157,6 +172,10 @@ impl Format {
             #[cfg(feature = "image")]
             Self::Slices => texture("png", &[U8, U16], false),
             Self::Ktx2 => texture("ktx2", &[U8, U16, Half, F32], true),
+            #[cfg(feature = "image")]
+            Self::Exr => texture("exr", &[F32, Half], false),
+            #[cfg(feature = "image")]
+            Self::ExrLayers => texture("exr", &[F32, Half], true),
         }
     }
 }

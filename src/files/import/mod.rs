@@ -1,17 +1,18 @@
 //! Tables out of other people's files: arrays of any plain type, order and number of axes, and text.
 
+mod source;
+
 use std::fmt;
-use std::io::{self, Read, Seek, SeekFrom};
+use std::io;
 use std::path::Path;
 
 use ndarray::{ArrayD, IxDyn, ShapeBuilder};
 
-use super::dtype::Dtype;
-use super::header::{self, Fault, GIVE_NPY};
+use self::source::{Problem, Source, source};
+use super::header::{Fault, GIVE_NPY};
 use super::layout::{Axis, Layout};
 use super::levels::Scale;
-use super::text::{self, Unread};
-use crate::error::{FormatError, ImportError, TableError};
+use crate::error::{ImportError, TableError};
 use crate::table::SampleTable;
 
 /// Larger files are not read for the sake of a message.
@@ -85,32 +86,6 @@ pub struct Imported {
     pub ones: usize,
 }
 
-/// The numbers of a file, as they lie there.
-struct Source {
-    values: Vec<f64>,
-    shape: Vec<usize>,
-    fortran: bool,
-    dtype: Option<Dtype>,
-    descr: String,
-}
-
-enum Problem {
-    Fault(Fault),
-    Import(ImportError),
-}
-
-impl<F: Into<Fault>> From<F> for Problem {
-    fn from(fault: F) -> Self {
-        Self::Fault(fault.into())
-    }
-}
-
-impl From<ImportError> for Problem {
-    fn from(problem: ImportError) -> Self {
-        Self::Import(problem)
-    }
-}
-
 impl SampleTable {
     /// Makes a table of somebody else's file: a `.npy` array of floats or integers of any size, byte order
     /// and memory order, or text with numbers between blanks, commas or semicolons, one sample or one row of
@@ -176,53 +151,6 @@ fn import(path: &Path, options: &ImportOptions) -> Result<Imported, Problem> {
         first_level: scale.first,
         ones,
     })
-}
-
-/// Reads all numbers of a file.
-fn source(path: &Path, options: &ImportOptions) -> Result<Source, Problem> {
-    let (mut file, bytes) = header::open(path)?;
-    let header = match header::read(&mut file, bytes) {
-        Err(Fault::Format(FormatError::NotNpy { .. })) => {
-            file.seek(SeekFrom::Start(0))?;
-            return source_of_text(file, options);
-        }
-        Err(fault) => return Err(fault.into()),
-        Ok(header) => header,
-    };
-    let dtype = header.dtype.map_err(|dtype| ImportError::Dtype { dtype })?;
-    let shape = header.shape;
-    let count = shape.iter().try_fold(1_usize, |count, &length| count.checked_mul(length));
-    let expected = count.and_then(|count| count.checked_mul(dtype.size)).unwrap_or(usize::MAX) as u64;
-    let given = bytes - header.bytes;
-    if given != expected {
-        return Err(FormatError::Length { given, expected, shape }.into());
-    }
-    let count = count.unwrap_or(0);
-    let mut values = Vec::new();
-    values.try_reserve_exact(count).map_err(io::Error::from)?;
-    let mut block = vec![0; 1 << 16];
-    while values.len() < count {
-        let bytes = block.len().min(dtype.size * (count - values.len()));
-        file.read_exact(&mut block[..bytes])?;
-        values.extend(block[..bytes].chunks_exact(dtype.size).map(|bytes| dtype.decode(bytes)));
-    }
-    Ok(Source { values, shape, fortran: header.fortran, dtype: Some(dtype), descr: header.descr })
-}
-
-fn source_of_text(file: std::fs::File, options: &ImportOptions) -> Result<Source, Problem> {
-    let numbers = text::read(file).map_err(|unread| match unread {
-        Unread::Io(error) => Problem::from(error),
-        Unread::Import(problem) => problem.into(),
-    })?;
-    let count = numbers.values.len();
-    let shape = match numbers.columns {
-        // All on one line, in whichever order: a list.
-        Ok(columns) if columns == count && columns > 16 => vec![count],
-        Ok(columns) => vec![count / columns, columns],
-        Err(_) if options.dims.is_some() => vec![count],
-        Err(ragged) => return Err(ragged.into()),
-    };
-    Ok(Source { values: numbers.values, shape, fortran: false, dtype: None, descr: "text".into() })
 }
 
 impl ImportOptions {
