@@ -67,11 +67,14 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// The layout of an array of this shape.
-    pub(super) fn of(shape: &[usize], options: &ImportOptions) -> Result<Self, ImportError> {
+    /// The layout of an array of this shape, whose axes are `known` if its format says them: it ends in
+    /// rows, columns and channels then.
+    pub(super) fn of(shape: &[usize], known: &[Axis], options: &ImportOptions) -> Result<Self, ImportError> {
         let layout = match options.lengths() {
             None if !options.axes.is_empty() => Self::named(shape, &options.axes)?,
             Some(_) if !options.axes.is_empty() => return Err(ImportError::AxesAndLengths),
+            Some(lengths) if !known.is_empty() => Self::list(shape, of_picture(shape, lengths))?,
+            None if !known.is_empty() => Self::named(shape, known)?,
             Some(lengths) => Self::list(shape, lengths)?,
             None => match usual(shape)? {
                 axes if axes.is_empty() => Self::list(shape, [None; 5])?,
@@ -136,6 +139,20 @@ impl Layout {
     }
 }
 
+/// Lengths of a picture, whose columns and channels are known.
+fn of_picture(shape: &[usize], lengths: [Option<usize>; 5]) -> [Option<usize>; 5] {
+    let [frames, height, width, spp, dims] = lengths;
+    let &[.., columns, channels] = shape else { return lengths };
+    let rest = |known: Option<usize>| match known {
+        Some(known) if known > 0 && channels.is_multiple_of(known) => Some(channels / known),
+        _ => None,
+    };
+    // Channels are samples and dimensions: all that are not said to be the one are the other.
+    let dims = dims.or_else(|| rest(spp)).or(Some(channels));
+    let spp = spp.or_else(|| rest(dims).filter(|&spp| spp > 1));
+    [frames, height, width.or(Some(columns)), spp, dims]
+}
+
 /// The axes that an array of this shape usually has; none for a list of samples.
 ///
 /// Pictures are as wide as high, and the axis before or behind them is that of frames.
@@ -177,7 +194,7 @@ mod tests {
     use super::*;
 
     fn shape(shape: &[usize], options: &ImportOptions) -> Result<[usize; 5], ImportError> {
-        Layout::of(shape, options).map(
+        Layout::of(shape, &[], options).map(
             |Layout { extent: Extent { frames, height, width, spp }, dims, .. }| {
                 [frames, height, width, spp, dims]
             },

@@ -1,13 +1,21 @@
 //! Tables out of other people's files: arrays of any plain type, order and number of axes, and text.
 
+#[cfg(feature = "image")]
+mod exr;
+mod ktx2;
+#[cfg(feature = "image")]
+mod png;
+mod recorded;
+mod set;
 mod source;
 
 use std::fmt;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use ndarray::{ArrayD, IxDyn, ShapeBuilder};
 
+use self::set::Pattern;
 use self::source::{Problem, Source, source};
 use super::header::{Fault, GIVE_NPY};
 use super::layout::{Axis, Layout};
@@ -84,6 +92,10 @@ pub struct Imported {
     pub first_level: u64,
     /// Values of 1 that became the largest number below.
     pub ones: usize,
+    /// Channels of a texture that were left out, because they repeat another or are constant.
+    pub left_out: Vec<usize>,
+    /// The record of the export that said how to read the file.
+    pub record: Option<PathBuf>,
 }
 
 impl SampleTable {
@@ -121,12 +133,30 @@ impl SampleTable {
 }
 
 fn import(path: &Path, options: &ImportOptions) -> Result<Imported, Problem> {
-    let Source { values, shape, fortran, dtype, descr } = source(path, options)?;
-    let layout = Layout::of(&shape, options)?;
-    let scale = Scale::of(&values, dtype, options.levels)?;
+    if *options == ImportOptions::default()
+        && let Some(record) = recorded::find(path)?
+    {
+        return recorded::read(path, record);
+    }
+    match Pattern::of(path) {
+        Some(pattern) => {
+            let source = set::read(&pattern, options)?;
+            let options = ImportOptions { levels: options.levels, ..ImportOptions::default() };
+            arranged(source, &options)
+        }
+        None => arranged(source(path, options)?, options),
+    }
+}
+
+/// A table of the numbers.
+fn arranged(mut source: Source, options: &ImportOptions) -> Result<Imported, Problem> {
+    let is_said = !options.axes.is_empty() || options.lengths().is_some();
+    let left_out = if is_said { Vec::new() } else { source.tell_frames_and_channels() };
+    let Source { values, shape, fortran, dtype, descr, levels, axes } = source;
+    let layout = Layout::of(&shape, &axes, options)?;
+    let scale = Scale::of(&values, dtype, options.levels.or(levels))?;
     let ones = if scale.levels.is_none() { values.iter().filter(|&&value| value == 1.0).count() } else { 0 };
-    let mut table = Vec::new();
-    table.try_reserve_exact(values.len()).map_err(io::Error::from)?;
+    let mut table = source::reserved(values.len())?;
     if fortran || !layout.axes.is_empty() {
         // Axes of length 1 that were dropped change nothing in the order.
         let kept =
@@ -150,6 +180,8 @@ fn import(path: &Path, options: &ImportOptions) -> Result<Imported, Problem> {
         levels: scale.levels,
         first_level: scale.first,
         ones,
+        left_out,
+        record: None,
     })
 }
 
@@ -198,7 +230,7 @@ impl fmt::Display for ImportOptions {
 
 impl fmt::Display for Imported {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        let Self { dtype, shape, axes, levels, first_level, ones, .. } = self;
+        let Self { dtype, shape, axes, levels, first_level, ones, left_out, record, .. } = self;
         write!(out, "{} of shape {shape:?} as ", dtype.trim_matches(['\'', '"']))?;
         match axes.as_slice() {
             [] => write!(out, "a list of samples in the order of a table")?,
@@ -209,9 +241,16 @@ impl fmt::Display for Imported {
             (Some(levels), 0) => write!(out, ", {levels} levels as (v + 1/2) / {levels}")?,
             (Some(levels), _) => write!(out, ", ranks from 1 as (v - 1/2) / {levels}")?,
         }
-        match ones {
-            0 => Ok(()),
-            ones => write!(out, ", {ones} of them 1, which became the largest number below"),
+        if *ones > 0 {
+            write!(out, ", {ones} of them 1, which became the largest number below")?;
+        }
+        if !left_out.is_empty() {
+            let names: Vec<String> = left_out.iter().map(usize::to_string).collect();
+            write!(out, ", without channel {}, constant or like another", names.join(", "))?;
+        }
+        match record {
+            Some(record) => write!(out, ", as {} says", record.display()),
+            None => Ok(()),
         }
     }
 }

@@ -1,13 +1,21 @@
 //! The numbers of somebody else's file, whatever its format.
 
+use std::fs::File;
+#[cfg(feature = "image")]
+use std::io::BufReader;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use super::ImportOptions;
+use super::ktx2;
 use crate::error::{FormatError, ImportError};
 use crate::files::dtype::Dtype;
 use crate::files::header::{self, Fault};
+use crate::files::layout::Axis;
 use crate::files::text::{self, Unread};
+
+/// Axes of a picture.
+pub(super) const PICTURE: [Axis; 3] = [Axis::Y, Axis::X, Axis::Dim];
 
 /// The numbers of a file, as they lie there.
 pub(super) struct Source {
@@ -16,6 +24,41 @@ pub(super) struct Source {
     pub(super) fortran: bool,
     pub(super) dtype: Option<Dtype>,
     pub(super) descr: String,
+    /// Levels, where the format says how many there are.
+    pub(super) levels: Option<u64>,
+    /// The axes, where the format says which they are.
+    pub(super) axes: Vec<Axis>,
+}
+
+impl Source {
+    /// Of a picture that is several times as high as wide, the frames, one below the other; and of channels
+    /// those that say something. Returns the others.
+    pub(super) fn tell_frames_and_channels(&mut self) -> Vec<usize> {
+        if let ([rows, columns, channels], true) = (&self.shape[..], self.axes == PICTURE) {
+            let [rows, columns, channels] = [*rows, *columns, *channels];
+            if columns > 1 && rows > columns && rows.is_multiple_of(columns) {
+                self.shape = vec![rows / columns, columns, columns, channels];
+                self.axes.insert(0, Axis::Frame);
+            }
+        }
+        let channels = match self.axes.last() {
+            Some(Axis::Dim) => self.shape[self.shape.len() - 1],
+            _ => return Vec::new(),
+        };
+        let texels = || self.values.chunks_exact(channels.max(1));
+        let is_constant = |at: usize| texels().all(|texel| texel[at] == self.values[at]);
+        let is_new = |at: usize| (0..at).all(|before| texels().any(|texel| texel[at] != texel[before]));
+        let mut kept: Vec<usize> = (0..channels).filter(|&at| !is_constant(at) && is_new(at)).collect();
+        if kept.is_empty() || kept.len() == channels {
+            // All of them are constant, or none.
+            kept = if kept.is_empty() && channels > 0 { vec![0] } else { return Vec::new() };
+        }
+        self.values = texels().flat_map(|texel| kept.iter().map(|&at| texel[at])).collect();
+        if let Some(last) = self.shape.last_mut() {
+            *last = kept.len();
+        }
+        (0..channels).filter(|at| !kept.contains(at)).collect()
+    }
 }
 
 pub(super) enum Problem {
@@ -38,6 +81,9 @@ impl From<ImportError> for Problem {
 /// Reads all numbers of a file.
 pub(super) fn source(path: &Path, options: &ImportOptions) -> Result<Source, Problem> {
     let (mut file, bytes) = header::open(path)?;
+    if let Some(picture) = picture(&mut file, bytes)? {
+        return Ok(picture);
+    }
     let header = match header::read(&mut file, bytes) {
         Err(Fault::Format(FormatError::NotNpy { .. })) => {
             file.seek(SeekFrom::Start(0))?;
@@ -63,10 +109,50 @@ pub(super) fn source(path: &Path, options: &ImportOptions) -> Result<Source, Pro
         file.read_exact(&mut block[..bytes])?;
         values.extend(block[..bytes].chunks_exact(dtype.size).map(|bytes| dtype.decode(bytes)));
     }
-    Ok(Source { values, shape, fortran: header.fortran, dtype: Some(dtype), descr: header.descr })
+    Ok(Source {
+        values,
+        shape,
+        fortran: header.fortran,
+        dtype: Some(dtype),
+        descr: header.descr,
+        levels: None,
+        axes: Vec::new(),
+    })
 }
 
-fn source_of_text(file: std::fs::File, options: &ImportOptions) -> Result<Source, Problem> {
+/// A texture, if the file begins like one.
+fn picture(file: &mut File, bytes: u64) -> Result<Option<Source>, Problem> {
+    let mut start = Vec::new();
+    file.take(8).read_to_end(&mut start)?;
+    file.seek(SeekFrom::Start(0))?;
+    if start == ktx2::SIGNATURE {
+        let mut bytes = reserved(usize::try_from(bytes).unwrap_or(usize::MAX))?;
+        file.read_to_end(&mut bytes)?;
+        return ktx2::read(&bytes).map(Some);
+    }
+    #[cfg(feature = "image")]
+    if start == super::png::SIGNATURE {
+        return super::png::read(BufReader::new(file)).map(Some);
+    }
+    #[cfg(feature = "image")]
+    if start.starts_with(&super::exr::SIGNATURE) {
+        return super::exr::read(BufReader::new(file), bytes).map(Some);
+    }
+    #[cfg(not(feature = "image"))]
+    if start == *b"\x89PNG\r\n\x1a\n" || start.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
+        return Err(ImportError::Feature.into());
+    }
+    Ok(None)
+}
+
+/// An empty list with room for so many.
+pub(super) fn reserved<T>(count: usize) -> Result<Vec<T>, io::Error> {
+    let mut list = Vec::new();
+    list.try_reserve_exact(count).map_err(io::Error::from)?;
+    Ok(list)
+}
+
+fn source_of_text(file: File, options: &ImportOptions) -> Result<Source, Problem> {
     let numbers = text::read(file).map_err(|unread| match unread {
         Unread::Io(error) => Problem::from(error),
         Unread::Import(problem) => problem.into(),
@@ -79,5 +165,13 @@ fn source_of_text(file: std::fs::File, options: &ImportOptions) -> Result<Source
         Err(_) if options.dims.is_some() => vec![count],
         Err(ragged) => return Err(ragged.into()),
     };
-    Ok(Source { values: numbers.values, shape, fortran: false, dtype: None, descr: "text".into() })
+    Ok(Source {
+        values: numbers.values,
+        shape,
+        fortran: false,
+        dtype: None,
+        descr: "text".into(),
+        levels: None,
+        axes: Vec::new(),
+    })
 }
