@@ -109,6 +109,48 @@ pub enum ImportError {
         /// Numbers of every line before.
         expected: usize,
     },
+    /// Lists of a C array that stand beside each other have unequal lengths.
+    #[error(
+        "a list that ends on line {line} has {given} members and those before it {expected}: \
+         write as many in every list"
+    )]
+    Lists {
+        /// Line, from 1.
+        line: usize,
+        /// Its members.
+        given: usize,
+        /// Members of every list before.
+        expected: usize,
+    },
+    /// Lists and numbers of a C array stand beside each other, or lists lie too deep in each other.
+    #[error(
+        "line {line} has braces where others have numbers, or more than 16 of them in each other: \
+         nest all numbers alike"
+    )]
+    Nesting {
+        /// Line, from 1.
+        line: usize,
+    },
+    /// A C array without its last brace.
+    #[error("it ends before its array does: it was cut off, write it again")]
+    Unclosed,
+    /// C without an array of numbers.
+    #[error("there is no array in it: give a source text with `name[] = {{ numbers }}`")]
+    NoArray,
+    /// More than one C array.
+    #[error("it has several arrays, {names}: name one, --array NAME")]
+    Arrays {
+        /// The first of them.
+        names: String,
+    },
+    /// No C array of this name.
+    #[error("it has no array {name:?}: give another --array, of {names}")]
+    NoSuchArray {
+        /// The name that was asked for.
+        name: String,
+        /// The first of those that are there.
+        names: String,
+    },
     /// A text file without numbers.
     #[error("there are no numbers in it: give a .npy file, or numbers between blanks or commas")]
     Empty,

@@ -1,6 +1,7 @@
 //! What lies on the disk: tables, their metadata, other people's files, and a writer whose files appear
 //! whole or not at all.
 
+mod c_source;
 mod dtype;
 mod header;
 mod import;
