@@ -3,6 +3,7 @@
 
 mod c_source;
 mod dtype;
+mod export;
 mod header;
 mod import;
 mod layout;
@@ -13,8 +14,9 @@ pub(crate) mod npy;
 mod text;
 mod whole;
 
+pub use self::export::{Depth, ExportOptions, ExportRecord, Exported, Format, RecordedFile, Rounding};
 pub use self::import::{ImportOptions, Imported};
 pub use self::layout::Axis;
 pub use self::metadata::{BoundEstimate, BoundRecord, KernelTaps, Metadata, RunRecord};
 pub use self::whole::WholeFile;
-pub use crate::error::{FormatError, ImportError, TableError};
+pub use crate::error::{ExportError, FormatError, ImportError, TableError};

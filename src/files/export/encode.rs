@@ -1,0 +1,72 @@
+//! Values as the numbers of a file, one by one, so that no second table is needed.
+
+use half::f16;
+
+use super::options::{Depth, ExportOptions};
+use crate::table::SampleTable;
+use crate::table::domain::BELOW_ONE;
+use crate::table::extent::Extent;
+
+/// The largest half below 1.
+const HALF_BELOW_ONE: f16 = f16::from_bits(0x3bff);
+
+/// A table whose values are read as numbers of a file.
+pub(super) struct Encoded<'a> {
+    table: &'a SampleTable,
+    pub(super) depth: Depth,
+}
+
+impl<'a> Encoded<'a> {
+    pub(super) fn new(table: &'a SampleTable, options: &ExportOptions) -> Self {
+        Self { table, depth: options.depth() }
+    }
+
+    pub(super) fn extent(&self) -> Extent {
+        self.table.extent()
+    }
+
+    pub(super) fn dims(&self) -> usize {
+        self.table.dims()
+    }
+
+    /// The level of the value at this position of the table's memory; that of floating point is its bits.
+    pub(super) fn number(&self, at: usize) -> u32 {
+        let value = self.table.values()[at];
+        match self.depth {
+            // Exact: a value below 1 by a power of two.
+            Depth::U8 => (value * 256.0) as u32,
+            Depth::U16 => (value * 65536.0) as u32,
+            Depth::Half => u32::from(f16::from_f32(value).min(HALF_BELOW_ONE).to_bits()),
+            Depth::F32 => value.to_bits(),
+        }
+    }
+
+    /// What a reader makes of it.
+    pub(super) fn decoded(&self, at: usize) -> f32 {
+        decode(self.depth, self.number(at))
+    }
+
+    /// The bytes of numbers, least significant first.
+    pub(super) fn extend_little(&self, bytes: &mut Vec<u8>, positions: impl Iterator<Item = usize>) {
+        let size = self.depth.bytes();
+        positions.for_each(|at| bytes.extend_from_slice(&self.number(at).to_le_bytes()[..size]));
+    }
+
+    /// The bytes of numbers, most significant first.
+    #[cfg(feature = "image")]
+    pub(super) fn extend_big(&self, bytes: &mut Vec<u8>, positions: impl Iterator<Item = usize>) {
+        let size = self.depth.bytes();
+        positions.for_each(|at| bytes.extend_from_slice(&self.number(at).to_be_bytes()[4 - size..]));
+    }
+}
+
+/// The value that a number of a file stands for.
+pub(super) fn decode(depth: Depth, number: u32) -> f32 {
+    match depth {
+        // Exact: 17 bits at most.
+        Depth::U8 => (number as f32 + 0.5) / 256.0,
+        Depth::U16 => (number as f32 + 0.5) / 65536.0,
+        Depth::Half => f16::from_bits(number as u16).to_f32().min(BELOW_ONE),
+        Depth::F32 => f32::from_bits(number),
+    }
+}
