@@ -25,6 +25,18 @@ pub enum Format {
     Slices,
     /// A KTX 2.0 file: a 2-D texture, or an array of them, one layer per frame.
     Ktx2,
+    /// Bare little-endian numbers in the order of the table, and a text file that says which.
+    Raw,
+    /// Four `f32` a texel without a header, what FAST reads as `-init`.
+    Fast,
+    /// C++ source text with the blue-noise textures of pbrt-v4, `[texture][x][y]`.
+    Pbrt,
+    /// A header for C99 and C++ with an array and functions that read it.
+    C,
+    /// Text, one sample a line, numbers between commas below the names of columns.
+    Csv,
+    /// Text, one sample a line, numbers between blanks.
+    Dat,
 }
 
 /// The numbers that a file holds.
@@ -128,9 +140,15 @@ impl Format {
         #[cfg(feature = "image")]
         Self::Slices,
         Self::Ktx2,
+        Self::Raw,
+        Self::Fast,
+        Self::Pbrt,
+        Self::C,
+        Self::Csv,
+        Self::Dat,
     ];
 
-    /// `atlas`, `slices`, `ktx2`.
+    /// `atlas`, `slices`, `ktx2`, `raw`, `fast`, `pbrt`, `c`, `csv`, `dat`.
     pub fn name(self) -> &'static str {
         match self {
             #[cfg(feature = "image")]
@@ -138,10 +156,17 @@ impl Format {
             #[cfg(feature = "image")]
             Self::Slices => "slices",
             Self::Ktx2 => "ktx2",
+            Self::Raw => "raw",
+            Self::Fast => "fast",
+            Self::Pbrt => "pbrt",
+            Self::C => "c",
+            Self::Csv => "csv",
+            Self::Dat => "dat",
         }
     }
 
-    /// What a file of it can hold. A texture has one sample of a pixel, and up to four dimensions.
+    /// What a file of it can hold. A texture has one sample of a pixel, and up to four dimensions; what is no
+    /// texture holds a whole table.
     pub(super) fn rule(self) -> Rule {
         use Depth::{F32, Half, U8, U16};
         let texture = |extension, depths, all_frames| Rule {
@@ -151,12 +176,25 @@ impl Format {
             all_samples: false,
             all_frames,
         };
+        let whole = |extension, depths| Rule {
+            extension,
+            depths,
+            most_dims: usize::MAX,
+            all_samples: true,
+            all_frames: true,
+        };
         match self {
             #[cfg(feature = "image")]
             Self::Atlas => texture("png", &[U8, U16], true),
             #[cfg(feature = "image")]
             Self::Slices => texture("png", &[U8, U16], false),
             Self::Ktx2 => texture("ktx2", &[U8, U16, Half, F32], true),
+            Self::Raw => whole("raw", &[F32, U16, U8, Half]),
+            Self::Fast => texture("bin", &[F32], true),
+            Self::Pbrt => whole("cpp", &[U16]),
+            Self::C => whole("h", &[F32, U16, U8]),
+            Self::Csv => whole("csv", &[F32]),
+            Self::Dat => whole("dat", &[F32]),
         }
     }
 }
