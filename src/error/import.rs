@@ -151,6 +151,48 @@ pub enum ImportError {
         /// The first of those that are there.
         names: String,
     },
+    /// Bare numbers of which nobody says what they are.
+    #[error(
+        "it is neither .npy nor text, and no .txt beside it says what its numbers are: \
+         if they are bare, give --dtype, such as '<f4', and lengths"
+    )]
+    NoDtype,
+    /// The text beside bare numbers has a line that is not understood.
+    #[error(
+        "line {line} of the .txt beside it has {text:?}: \
+         write `dtype: <f4`, `shape: 64, 64, 2` and `axes: y, x, dim`, or give --dtype and lengths"
+    )]
+    Description {
+        /// Line, from 1.
+        line: usize,
+        /// What stands behind the colon.
+        text: String,
+    },
+    /// Samples of so many numbers, of which the first are read, do not make up the numbers.
+    #[error(
+        "its {values} numbers are no samples of {channels} of which {dims} could be read: \
+         give --channels that divide them, and at most as many --dims"
+    )]
+    Channels {
+        /// Numbers in the file.
+        values: usize,
+        /// Numbers of a sample.
+        channels: usize,
+        /// Numbers that are read.
+        dims: usize,
+    },
+    /// The record of an export contradicts itself.
+    #[error("it {problem}: export the table again, or remove it and import each file by itself")]
+    Record {
+        /// What the record does.
+        problem: String,
+    },
+    /// The files of an export hold other values than their record says.
+    #[error(
+        "its files hold other values than were exported: export the table again, \
+         or remove this record to import what is there"
+    )]
+    Changed,
     /// A text file without numbers.
     #[error("there are no numbers in it: give a .npy file, or numbers between blanks or commas")]
     Empty,

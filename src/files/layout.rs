@@ -67,9 +67,10 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// The layout of an array of this shape.
-    pub(super) fn of(shape: &[usize], options: &ImportOptions) -> Result<Self, ImportError> {
+    /// The layout of an array of this shape, whose axes are `known` if the file names them itself.
+    pub(super) fn of(shape: &[usize], known: &[Axis], options: &ImportOptions) -> Result<Self, ImportError> {
         let layout = match options.lengths() {
+            _ if options.axes.is_empty() && !known.is_empty() => Self::known(shape, known, options)?,
             None if !options.axes.is_empty() => Self::named(shape, &options.axes)?,
             Some(_) if !options.axes.is_empty() => return Err(ImportError::AxesAndLengths),
             Some(lengths) => Self::list(shape, lengths)?,
@@ -81,6 +82,20 @@ impl Layout {
         let Extent { frames, height, width, spp } = layout.extent;
         let shape = [frames, height, width, spp, layout.dims];
         layout.extent.validate(layout.dims).map_err(|problem| ImportError::Extent { shape, problem })?;
+        Ok(layout)
+    }
+
+    /// Axes that a file names must have the lengths that are given.
+    fn known(shape: &[usize], axes: &[Axis], options: &ImportOptions) -> Result<Self, ImportError> {
+        let layout = Self::named(shape, axes)?;
+        let Extent { frames, height, width, spp } = layout.extent;
+        let given = options.lengths().unwrap_or_default();
+        for (given, found) in given.into_iter().zip([frames, height, width, spp, layout.dims]) {
+            if given.is_some_and(|given| given != found) {
+                let given = given.unwrap_or(0);
+                return Err(ImportError::Lengths { values: shape.iter().product(), given });
+            }
+        }
         Ok(layout)
     }
 
@@ -177,7 +192,7 @@ mod tests {
     use super::*;
 
     fn shape(shape: &[usize], options: &ImportOptions) -> Result<[usize; 5], ImportError> {
-        Layout::of(shape, options).map(
+        Layout::of(shape, &[], options).map(
             |Layout { extent: Extent { frames, height, width, spp }, dims, .. }| {
                 [frames, height, width, spp, dims]
             },

@@ -14,6 +14,7 @@ pub(crate) mod npy;
 mod text;
 mod whole;
 
+pub use self::dtype::Dtype;
 pub use self::export::{Depth, ExportOptions, ExportRecord, Exported, Format, RecordedFile, Rounding};
 pub use self::import::{ImportOptions, Imported};
 pub use self::layout::Axis;

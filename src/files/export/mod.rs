@@ -169,7 +169,7 @@ fn record(values: &Encoded, options: &ExportOptions, plan: &[(PathBuf, Part)]) -
     let mut hash = Hash::default();
     (0..count).for_each(|at| hash.add(values.decoded(at)));
     ExportRecord {
-        kind: record::KIND.into(),
+        kind: ExportRecord::KIND.into(),
         crate_version: env!("CARGO_PKG_VERSION").into(),
         format: options.format,
         bits: values.depth,

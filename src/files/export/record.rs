@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::options::{Depth, Format, Rounding};
 
 /// Kind and version of the file; the number grows when an old reader would misunderstand a new file.
-pub(super) const KIND: &str = "fsot export 1";
+const KIND: &str = "fsot export 1";
 
 /// How to read the files of an export: by this, [`SampleTable::import`](crate::SampleTable::import) makes a
 /// table of them again.
@@ -51,6 +51,9 @@ pub struct RecordedFile {
 }
 
 impl ExportRecord {
+    /// What [`kind`](Self::kind) is.
+    pub(in crate::files) const KIND: &str = KIND;
+
     /// Where the record of an export lies: the path that was given, and `.json`.
     pub fn path_beside(path: &Path) -> PathBuf {
         let mut name = path.as_os_str().to_owned();

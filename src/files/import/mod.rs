@@ -1,17 +1,23 @@
-//! Tables out of other people's files: arrays of any plain type, order and number of axes, and text.
+//! Tables out of other people's files: arrays of any plain type, order and number of axes, bare numbers, text,
+//! C and C++; and out of what an export has written.
+
+mod raw;
+mod recorded;
+mod source;
 
 use std::fmt;
-use std::io::{self, Read, Seek, SeekFrom};
+use std::io;
 use std::path::Path;
 
 use ndarray::{ArrayD, IxDyn, ShapeBuilder};
 
+use self::source::Source;
 use super::dtype::Dtype;
-use super::header::{self, Fault, GIVE_NPY};
+use super::header::{Fault, GIVE_NPY};
 use super::layout::{Axis, Layout};
 use super::levels::Scale;
-use super::text::{self, Unread};
-use crate::error::{FormatError, ImportError, TableError};
+use super::text::Unread;
+use crate::error::{ImportError, TableError};
 use crate::table::SampleTable;
 
 /// Larger files are not read for the sake of a message.
@@ -61,6 +67,15 @@ pub struct ImportOptions {
     /// Dimensions of a sample of a list; the length of the last axis or of a line of text, up to 16, if it is
     /// not given.
     pub dims: Option<usize>,
+    /// Numbers that a sample takes in a list, of which the first `dims` are read, such as 4 in a texture of
+    /// RGBA; only what is read if it is not given.
+    pub channels: Option<usize>,
+    /// The type of the numbers of a file that has no header. If it is not given, a text beside the file says
+    /// it, whose name is the file's and `.txt`: lines `dtype: <f4`, `shape: 1, 64, 64, 1, 2`, `axes: frame,
+    /// y, x, sample, dim` and, of levels, `levels: 65536`; those of axes and of levels may be missing.
+    pub dtype: Option<Dtype>,
+    /// The name of the array, where a C or C++ source text has several.
+    pub array: Option<String>,
 }
 
 /// A table, and what was taken for what.
@@ -85,18 +100,18 @@ pub struct Imported {
     pub ones: usize,
 }
 
-/// The numbers of a file, as they lie there.
-struct Source {
-    values: Vec<f64>,
-    shape: Vec<usize>,
-    fortran: bool,
-    dtype: Option<Dtype>,
-    descr: String,
-}
-
 enum Problem {
     Fault(Fault),
     Import(ImportError),
+}
+
+impl Problem {
+    fn of(self, path: &Path) -> TableError {
+        match self {
+            Self::Fault(fault) => fault.of(path),
+            Self::Import(problem) => TableError::Import { path: path.into(), problem },
+        }
+    }
 }
 
 impl<F: Into<Fault>> From<F> for Problem {
@@ -108,6 +123,15 @@ impl<F: Into<Fault>> From<F> for Problem {
 impl From<ImportError> for Problem {
     fn from(problem: ImportError) -> Self {
         Self::Import(problem)
+    }
+}
+
+impl From<Unread> for Problem {
+    fn from(unread: Unread) -> Self {
+        match unread {
+            Unread::Io(error) => error.into(),
+            Unread::Import(problem) => problem.into(),
+        }
     }
 }
 
@@ -138,17 +162,17 @@ impl SampleTable {
     /// ```
     pub fn import(path: impl AsRef<Path>, options: &ImportOptions) -> Result<Imported, TableError> {
         let path = path.as_ref();
-        import(path, options).map_err(|problem| match problem {
-            Problem::Fault(fault) => fault.of(path),
-            Problem::Import(problem) => TableError::Import { path: path.into(), problem },
-        })
+        match recorded::import(path, options) {
+            Some(imported) => imported,
+            None => import(path, options).map_err(|problem| problem.of(path)),
+        }
     }
 }
 
 fn import(path: &Path, options: &ImportOptions) -> Result<Imported, Problem> {
-    let Source { values, shape, fortran, dtype, descr } = source(path, options)?;
-    let layout = Layout::of(&shape, options)?;
-    let scale = Scale::of(&values, dtype, options.levels)?;
+    let Source { values, shape, axes, fortran, dtype, levels, descr } = source::read(path, options)?;
+    let layout = Layout::of(&shape, &axes, options)?;
+    let scale = Scale::of(&values, dtype, options.levels.or(levels))?;
     let ones = if scale.levels.is_none() { values.iter().filter(|&&value| value == 1.0).count() } else { 0 };
     let mut table = Vec::new();
     table.try_reserve_exact(values.len()).map_err(io::Error::from)?;
@@ -176,53 +200,6 @@ fn import(path: &Path, options: &ImportOptions) -> Result<Imported, Problem> {
         first_level: scale.first,
         ones,
     })
-}
-
-/// Reads all numbers of a file.
-fn source(path: &Path, options: &ImportOptions) -> Result<Source, Problem> {
-    let (mut file, bytes) = header::open(path)?;
-    let header = match header::read(&mut file, bytes) {
-        Err(Fault::Format(FormatError::NotNpy { .. })) => {
-            file.seek(SeekFrom::Start(0))?;
-            return source_of_text(file, options);
-        }
-        Err(fault) => return Err(fault.into()),
-        Ok(header) => header,
-    };
-    let dtype = header.dtype.map_err(|dtype| ImportError::Dtype { dtype })?;
-    let shape = header.shape;
-    let count = shape.iter().try_fold(1_usize, |count, &length| count.checked_mul(length));
-    let expected = count.and_then(|count| count.checked_mul(dtype.size)).unwrap_or(usize::MAX) as u64;
-    let given = bytes - header.bytes;
-    if given != expected {
-        return Err(FormatError::Length { given, expected, shape }.into());
-    }
-    let count = count.unwrap_or(0);
-    let mut values = Vec::new();
-    values.try_reserve_exact(count).map_err(io::Error::from)?;
-    let mut block = vec![0; 1 << 16];
-    while values.len() < count {
-        let bytes = block.len().min(dtype.size * (count - values.len()));
-        file.read_exact(&mut block[..bytes])?;
-        values.extend(block[..bytes].chunks_exact(dtype.size).map(|bytes| dtype.decode(bytes)));
-    }
-    Ok(Source { values, shape, fortran: header.fortran, dtype: Some(dtype), descr: header.descr })
-}
-
-fn source_of_text(file: std::fs::File, options: &ImportOptions) -> Result<Source, Problem> {
-    let numbers = text::read(file).map_err(|unread| match unread {
-        Unread::Io(error) => Problem::from(error),
-        Unread::Import(problem) => problem.into(),
-    })?;
-    let count = numbers.values.len();
-    let shape = match numbers.columns {
-        // All on one line, in whichever order: a list.
-        Ok(columns) if columns == count && columns > 16 => vec![count],
-        Ok(columns) => vec![count / columns, columns],
-        Err(_) if options.dims.is_some() => vec![count],
-        Err(ragged) => return Err(ragged.into()),
-    };
-    Ok(Source { values: numbers.values, shape, fortran: false, dtype: None, descr: "text".into() })
 }
 
 impl ImportOptions {
@@ -262,6 +239,9 @@ impl fmt::Display for ImportOptions {
             ("width", number(self.width)),
             ("spp", number(self.spp)),
             ("dims", number(self.dims)),
+            ("channels", number(self.channels)),
+            ("dtype", self.dtype.map(|dtype| quoted(&dtype.to_string()))),
+            ("array", self.array.as_deref().map(quoted)),
         ];
         let flags = flags.into_iter().filter_map(|(flag, value)| Some(format!("--{flag} {}", value?)));
         out.write_str(&flags.collect::<Vec<_>>().join(" "))
@@ -306,19 +286,23 @@ pub(super) fn advice(path: &Path) -> String {
     }
     let flags = options.to_string();
     let flags = if flags.is_empty() { flags } else { format!("{flags} ") };
-    let [from, to] = [path, &path.with_extension("table.npy")].map(quoted);
+    let [from, to] = [path, &path.with_extension("table.npy")].map(quoted_path);
     format!("run `fsot import {from} {flags}--out {to}`, or SampleTable::import with these options")
 }
 
 /// A path as a shell reads it.
-fn quoted(path: &Path) -> String {
+fn quoted_path(path: &Path) -> String {
     let path = path.to_string_lossy();
     // A name that begins like a flag is none behind its folder.
-    let path = if path.starts_with('-') { format!("./{path}") } else { path.into_owned() };
+    if path.starts_with('-') { quoted(&format!("./{path}")) } else { quoted(&path) }
+}
+
+/// A word as a shell reads it.
+fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "/._-+:@%,".contains(c);
-    if !path.is_empty() && path.chars().all(is_plain) {
-        path
+    if !word.is_empty() && word.chars().all(is_plain) {
+        word.into()
     } else {
-        format!("'{}'", path.replace('\'', r"'\''"))
+        format!("'{}'", word.replace('\'', r"'\''"))
     }
 }
