@@ -2,7 +2,7 @@
 
 use half::f16;
 
-use super::options::{Depth, ExportOptions};
+use super::options::{Depth, ExportOptions, Format, Rounding};
 use crate::table::SampleTable;
 use crate::table::domain::BELOW_ONE;
 use crate::table::extent::Extent;
@@ -52,11 +52,42 @@ impl<'a> Encoded<'a> {
         positions.for_each(|at| bytes.extend_from_slice(&self.number(at).to_le_bytes()[..size]));
     }
 
+    /// The bytes of numbers in the order of this machine.
+    #[cfg(feature = "image")]
+    pub(super) fn extend_native(&self, bytes: &mut Vec<u8>, positions: impl Iterator<Item = usize>) {
+        if cfg!(target_endian = "big") {
+            self.extend_big(bytes, positions);
+        } else {
+            self.extend_little(bytes, positions);
+        }
+    }
+
     /// The bytes of numbers, most significant first.
     #[cfg(feature = "image")]
     pub(super) fn extend_big(&self, bytes: &mut Vec<u8>, positions: impl Iterator<Item = usize>) {
         let size = self.depth.bytes();
         positions.for_each(|at| bytes.extend_from_slice(&self.number(at).to_be_bytes()[4 - size..]));
+    }
+}
+
+impl SampleTable {
+    /// The table that is read from files of these numbers: what an export costs can be measured on it.
+    ///
+    /// ```
+    /// use fsot::files::{Depth, Rounding};
+    /// use fsot::{Extent, SampleTable};
+    ///
+    /// let table = SampleTable::new(Extent::still(1, 2), 1, vec![0.0, 0.3])?;
+    /// let read = table.quantized(Depth::U8, Rounding::Floor);
+    /// assert_eq!(read.values(), [0.5 / 256.0, 76.5 / 256.0]);
+    /// # Ok::<(), fsot::files::TableError>(())
+    /// ```
+    #[must_use]
+    pub fn quantized(&self, depth: Depth, rounding: Rounding) -> Self {
+        let options = ExportOptions { depth: Some(depth), rounding, ..ExportOptions::new(Format::Ktx2) };
+        let encoded = Encoded::new(self, &options);
+        let values = (0..self.values().len()).map(|at| encoded.decoded(at)).collect();
+        Self::trusted(self.extent(), self.dims(), values)
     }
 }
 

@@ -4,6 +4,8 @@
 //! is a rule ([`options`]) and a function that writes one file.
 
 mod encode;
+#[cfg(feature = "image")]
+mod exr;
 pub(in crate::files) mod fast;
 mod ktx2;
 mod lines;
@@ -147,6 +149,8 @@ fn write(
     match format {
         #[cfg(feature = "image")]
         Format::Atlas | Format::Slices => png::write(out, values, part),
+        #[cfg(feature = "image")]
+        Format::Exr | Format::ExrLayers => exr::write(out, values, part),
         Format::Ktx2 => ktx2::write(out, values, part),
         Format::Raw => raw::write(out, values, part),
         Format::Fast => fast::write(out, values, part),

@@ -25,6 +25,13 @@ pub enum Format {
     Slices,
     /// A KTX 2.0 file: a 2-D texture, or an array of them, one layer per frame.
     Ktx2,
+    /// One OpenEXR picture per frame.
+    #[cfg(feature = "image")]
+    Exr,
+    /// One OpenEXR file, with a layer per frame.
+    #[cfg(feature = "image")]
+    #[serde(rename = "exr-layers")]
+    ExrLayers,
     /// Bare little-endian numbers in the order of the table, and a text file that says which.
     Raw,
     /// Four `f32` a texel without a header, what FAST reads as `-init`.
@@ -140,6 +147,10 @@ impl Format {
         #[cfg(feature = "image")]
         Self::Slices,
         Self::Ktx2,
+        #[cfg(feature = "image")]
+        Self::Exr,
+        #[cfg(feature = "image")]
+        Self::ExrLayers,
         Self::Raw,
         Self::Fast,
         Self::Pbrt,
@@ -148,7 +159,7 @@ impl Format {
         Self::Dat,
     ];
 
-    /// `atlas`, `slices`, `ktx2`, `raw`, `fast`, `pbrt`, `c`, `csv`, `dat`.
+    /// `atlas`, `slices`, `ktx2`, `exr`, `exr-layers`, `raw`, `fast`, `pbrt`, `c`, `csv`, `dat`.
     pub fn name(self) -> &'static str {
         match self {
             #[cfg(feature = "image")]
@@ -156,6 +167,10 @@ impl Format {
             #[cfg(feature = "image")]
             Self::Slices => "slices",
             Self::Ktx2 => "ktx2",
+            #[cfg(feature = "image")]
+            Self::Exr => "exr",
+            #[cfg(feature = "image")]
+            Self::ExrLayers => "exr-layers",
             Self::Raw => "raw",
             Self::Fast => "fast",
             Self::Pbrt => "pbrt",
@@ -189,6 +204,10 @@ impl Format {
             #[cfg(feature = "image")]
             Self::Slices => texture("png", &[U8, U16], false),
             Self::Ktx2 => texture("ktx2", &[U8, U16, Half, F32], true),
+            #[cfg(feature = "image")]
+            Self::Exr => texture("exr", &[F32, Half], false),
+            #[cfg(feature = "image")]
+            Self::ExrLayers => texture("exr", &[F32, Half], true),
             Self::Raw => whole("raw", &[F32, U16, U8, Half]),
             Self::Fast => texture("bin", &[F32], true),
             Self::Pbrt => whole("cpp", &[U16]),
