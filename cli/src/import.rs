@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use fsot::files::{Axis, ImportOptions, Imported, Metadata};
+use fsot::files::{Axis, Dtype, ImportOptions, Imported, Metadata};
 use fsot::{Extent, SampleTable};
 use serde_json::json;
 
@@ -39,8 +39,8 @@ Exit codes: 0 done, 1 refused or failed, 2 bad command line.";
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
-    /// A .npy file, a PNG, KTX 2 or EXR texture, text with numbers between blanks or commas, or what was given
-    /// to fsot export as --out.
+    /// A .npy file, a PNG, KTX 2 or EXR texture, text with numbers between blanks or commas, or what was
+    /// given to fsot export as --out.
     path: PathBuf,
     /// Where to write the table, as .npy.
     #[arg(long, value_name = "NPY")]
@@ -67,6 +67,15 @@ pub struct Arguments {
     /// Dimensions of a sample of a list [default: numbers on a line, up to 16].
     #[arg(long, value_parser = crate::flags::count())]
     dims: Option<usize>,
+    /// Numbers that a sample takes in a list, of which the first --dims are read, such as 4 of RGBA.
+    #[arg(long, value_parser = crate::flags::count())]
+    channels: Option<usize>,
+    /// Type of the numbers of a file without a header, as numpy calls it: <f4, <u2, |u1 and so on.
+    #[arg(long)]
+    dtype: Option<Dtype>,
+    /// Which array of a C or C++ source text.
+    #[arg(long, value_name = "NAME")]
+    array: Option<String>,
     #[command(flatten)]
     shared: Shared,
 }
@@ -76,11 +85,12 @@ pub struct Arguments {
 /// # Errors
 /// Whatever stands against it, in one sentence.
 pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
-    let Arguments { path, out, levels, frames, height, width, spp, dims, shared, .. } = arguments;
+    let Arguments { path, out, levels, frames, height, width, spp, dims, channels, shared, .. } = arguments;
     output::check(&[Output { flag: "--out", path: out, endings: &["npy"] }], &[path])?;
     let (axes, levels) = (arguments.axes.clone(), *levels);
     let [frames, height, width, spp, dims] = [*frames, *height, *width, *spp, *dims];
-    let options = ImportOptions { axes, levels, frames, height, width, spp, dims };
+    let (channels, dtype, array) = (*channels, arguments.dtype, arguments.array.clone());
+    let options = ImportOptions { axes, levels, frames, height, width, spp, dims, channels, dtype, array };
     let imported = SampleTable::import(path, &options)?;
     let Imported { table, dtype, shape: of_file, axes, levels, first_level, ones, left_out, record, .. } =
         &imported;

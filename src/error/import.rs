@@ -1,7 +1,5 @@
 //! What stands against making a table of somebody else's file.
 
-use std::path::PathBuf;
-
 use thiserror::Error;
 
 use super::{ExtentError, Short};
@@ -111,6 +109,90 @@ pub enum ImportError {
         /// Numbers of every line before.
         expected: usize,
     },
+    /// Lists of a C array that stand beside each other have unequal lengths.
+    #[error(
+        "a list that ends on line {line} has {given} members and those before it {expected}: \
+         write as many in every list"
+    )]
+    Lists {
+        /// Line, from 1.
+        line: usize,
+        /// Its members.
+        given: usize,
+        /// Members of every list before.
+        expected: usize,
+    },
+    /// Lists and numbers of a C array stand beside each other, or lists lie too deep in each other.
+    #[error(
+        "line {line} has braces where others have numbers, or more than 16 of them in each other: \
+         nest all numbers alike"
+    )]
+    Nesting {
+        /// Line, from 1.
+        line: usize,
+    },
+    /// A C array without its last brace.
+    #[error("it ends before its array does: it was cut off, write it again")]
+    Unclosed,
+    /// C without an array of numbers.
+    #[error("there is no array in it: give a source text with `name[] = {{ numbers }}`")]
+    NoArray,
+    /// More than one C array.
+    #[error("it has several arrays, {names}: name one, --array NAME")]
+    Arrays {
+        /// The first of them.
+        names: String,
+    },
+    /// No C array of this name.
+    #[error("it has no array {name:?}: give another --array, of {names}")]
+    NoSuchArray {
+        /// The name that was asked for.
+        name: String,
+        /// The first of those that are there.
+        names: String,
+    },
+    /// Bare numbers of which nobody says what they are.
+    #[error(
+        "it is neither .npy nor text, and no .txt beside it says what its numbers are: \
+         if they are bare, give --dtype, such as '<f4', and lengths"
+    )]
+    NoDtype,
+    /// The text beside bare numbers has a line that is not understood.
+    #[error(
+        "line {line} of the .txt beside it has {text:?}: \
+         write `dtype: <f4`, `shape: 64, 64, 2` and `axes: y, x, dim`, or give --dtype and lengths"
+    )]
+    Description {
+        /// Line, from 1.
+        line: usize,
+        /// What stands behind the colon.
+        text: String,
+    },
+    /// Samples of so many numbers, of which the first are read, do not make up the numbers.
+    #[error(
+        "its {values} numbers are no samples of {channels} of which {dims} could be read: \
+         give --channels that divide them, and at most as many --dims"
+    )]
+    Channels {
+        /// Numbers in the file.
+        values: usize,
+        /// Numbers of a sample.
+        channels: usize,
+        /// Numbers that are read.
+        dims: usize,
+    },
+    /// The record of an export contradicts itself.
+    #[error("it {problem}: export the table again, or remove it and import each file by itself")]
+    Record {
+        /// What the record does.
+        problem: String,
+    },
+    /// The files of an export hold other values than their record says.
+    #[error(
+        "its files hold other values than were exported: export the table again, \
+         or remove this record to import what is there"
+    )]
+    Changed,
     /// A text file without numbers.
     #[error("there are no numbers in it: give a .npy file, or numbers between blanks or commas")]
     Empty,
@@ -228,44 +310,5 @@ pub enum ImportError {
     UnlikeShapes {
         /// Shapes that do not go together.
         shapes: Vec<Vec<usize>>,
-    },
-    /// The record beside an export says what cannot be.
-    #[error(
-        "its record {} is damaged ({reason}): export the table again, or take the record away and import the \
-         file by itself",
-        path.display()
-    )]
-    Record {
-        /// The record.
-        path: PathBuf,
-        /// What is wrong with it.
-        reason: String,
-    },
-    /// The record beside an export is of other numbers.
-    #[error(
-        "its record {} is of other numbers (SHA-256 {record}) than it holds ({found}): export the table \
-         again, or take the record away and import the file by itself",
-        path.display()
-    )]
-    OtherValues {
-        /// The record.
-        path: PathBuf,
-        /// Hash according to the record.
-        record: String,
-        /// Hash of the values.
-        found: String,
-    },
-    /// A file holds more or fewer numbers than its record says.
-    #[error(
-        "{name} has {given} numbers, and its record speaks of {expected}: export the table again, or take \
-         the record away and import the file by itself"
-    )]
-    OtherCount {
-        /// The file.
-        name: String,
-        /// Numbers in it.
-        given: usize,
-        /// Numbers according to the record.
-        expected: usize,
     },
 }

@@ -57,6 +57,9 @@ impl FromStr for Axis {
 /// Longest last axis that is taken for the dimensions of a sample; a longer one is a row of pixels.
 const MOST_COLUMNS: usize = 16;
 
+/// The last axes of pictures.
+pub(super) const PICTURE: [Axis; 3] = [Axis::Y, Axis::X, Axis::Dim];
+
 /// Where the axes of an array go.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Layout {
@@ -67,14 +70,15 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// The layout of an array of this shape, whose axes are `known` if its format says them: it ends in
-    /// rows, columns and channels then.
+    /// The layout of an array of this shape, whose axes are `known` if the file names them itself.
     pub(super) fn of(shape: &[usize], known: &[Axis], options: &ImportOptions) -> Result<Self, ImportError> {
         let layout = match options.lengths() {
+            Some(lengths) if options.axes.is_empty() && known.ends_with(&PICTURE) => {
+                Self::list(shape, of_picture(shape, lengths))?
+            }
+            _ if options.axes.is_empty() && !known.is_empty() => Self::known(shape, known, options)?,
             None if !options.axes.is_empty() => Self::named(shape, &options.axes)?,
             Some(_) if !options.axes.is_empty() => return Err(ImportError::AxesAndLengths),
-            Some(lengths) if !known.is_empty() => Self::list(shape, of_picture(shape, lengths))?,
-            None if !known.is_empty() => Self::named(shape, known)?,
             Some(lengths) => Self::list(shape, lengths)?,
             None => match usual(shape)? {
                 axes if axes.is_empty() => Self::list(shape, [None; 5])?,
@@ -84,6 +88,20 @@ impl Layout {
         let Extent { frames, height, width, spp } = layout.extent;
         let shape = [frames, height, width, spp, layout.dims];
         layout.extent.validate(layout.dims).map_err(|problem| ImportError::Extent { shape, problem })?;
+        Ok(layout)
+    }
+
+    /// Axes that a file names must have the lengths that are given.
+    fn known(shape: &[usize], axes: &[Axis], options: &ImportOptions) -> Result<Self, ImportError> {
+        let layout = Self::named(shape, axes)?;
+        let Extent { frames, height, width, spp } = layout.extent;
+        let given = options.lengths().unwrap_or_default();
+        for (given, found) in given.into_iter().zip([frames, height, width, spp, layout.dims]) {
+            if given.is_some_and(|given| given != found) {
+                let given = given.unwrap_or(0);
+                return Err(ImportError::Lengths { values: shape.iter().product(), given });
+            }
+        }
         Ok(layout)
     }
 

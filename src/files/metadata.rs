@@ -14,7 +14,7 @@ use crate::table::extent::Extent;
 
 /// Kind and version of the file; the number grows when an old reader would misunderstand a new file.
 const FORMAT: &str = "fsot sample table 1";
-const AXES: [&str; 5] = ["frame", "y", "x", "sample", "dim"];
+pub(super) const AXES: [&str; 5] = ["frame", "y", "x", "sample", "dim"];
 const DTYPE: &str = "<f4";
 const ORDER: &str = "C";
 const RANGE: &str = "[0, 1)";

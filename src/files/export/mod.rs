@@ -6,12 +6,16 @@
 mod encode;
 #[cfg(feature = "image")]
 mod exr;
+pub(in crate::files) mod fast;
 mod ktx2;
+mod lines;
 mod options;
 mod parts;
 #[cfg(feature = "image")]
 mod png;
+pub(in crate::files) mod raw;
 mod record;
+pub(in crate::files) mod source;
 
 use std::fmt;
 use std::io::{self, Seek, Write};
@@ -20,10 +24,8 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use self::encode::Encoded;
-pub(super) use self::encode::decoded;
 pub use self::options::{Depth, ExportOptions, Format, Rounding};
-pub(super) use self::parts::Part;
-pub(super) use self::record::KIND;
+use self::parts::Part;
 pub use self::record::{ExportRecord, RecordedFile};
 use super::metadata::Hash;
 use super::whole::{self, WholeFile};
@@ -57,8 +59,16 @@ impl ExportOptions {
         dims: usize,
     ) -> Result<Vec<PathBuf>, ExportError> {
         let path = path.as_ref();
-        let files = self.plan(path, extent, dims)?.into_iter().map(|(path, _)| path);
-        Ok(files.chain([ExportRecord::path_beside(path)]).collect())
+        let mut files: Vec<PathBuf> =
+            self.plan(path, extent, dims)?.into_iter().map(|(path, _)| path).collect();
+        files.extend(self.text_path(&files[0]));
+        files.push(ExportRecord::path_beside(path));
+        Ok(files)
+    }
+
+    /// The text file beside a format that says nothing itself.
+    fn text_path(&self, path: &Path) -> Option<PathBuf> {
+        (self.format == Format::Raw).then(|| raw::text_path(path))
     }
 
     fn plan(&self, path: &Path, extent: Extent, dims: usize) -> Result<Vec<(PathBuf, Part)>, ExportError> {
@@ -100,15 +110,22 @@ impl SampleTable {
         let plan = options.plan(path, self.extent(), self.dims())?;
         let record_path = ExportRecord::path_beside(path);
         let cannot_write = |path: &Path, source| ExportError::Io { path: path.into(), source };
-        let paths = plan.iter().map(|(path, _)| path).chain([&record_path]);
+        let text_path = options.text_path(&plan[0].0);
+        let paths = plan.iter().map(|(path, _)| path).chain(&text_path).chain([&record_path]);
         for path in paths {
             whole::check(path).map_err(|error| cannot_write(path, error))?;
         }
         let encoded = Encoded::new(self, options);
         let mut complete = Vec::with_capacity(plan.len() + 1);
         for (path, part) in &plan {
-            let file = WholeFile::write(path, |out| write(out, options.format, &encoded, part));
+            let file = WholeFile::write(path, |out| write(out, path, options.format, &encoded, part));
             complete.push(file.map_err(|error| cannot_write(path, error))?);
+        }
+        if let Some(text_path) = &text_path {
+            let (path, part) = &plan[0];
+            let text = raw::text(path, &encoded, part);
+            let file = WholeFile::write(text_path, |out| out.write_all(text.as_bytes()));
+            complete.push(file.map_err(|error| cannot_write(text_path, error))?);
         }
         let record = record(&encoded, options, &plan);
         let beside = WholeFile::write(&record_path, |out| {
@@ -122,13 +139,25 @@ impl SampleTable {
 }
 
 /// Writes one file.
-fn write(out: &mut (impl Write + Seek), format: Format, values: &Encoded, part: &Part) -> io::Result<()> {
+fn write(
+    out: &mut (impl Write + Seek),
+    path: &Path,
+    format: Format,
+    values: &Encoded,
+    part: &Part,
+) -> io::Result<()> {
     match format {
         #[cfg(feature = "image")]
         Format::Atlas | Format::Slices => png::write(out, values, part),
         #[cfg(feature = "image")]
         Format::Exr | Format::ExrLayers => exr::write(out, values, part),
         Format::Ktx2 => ktx2::write(out, values, part),
+        Format::Raw => raw::write(out, values, part),
+        Format::Fast => fast::write(out, values, part),
+        Format::Pbrt => source::write_pbrt(out, path, values, part),
+        Format::C => source::write_header(out, path, values, part),
+        Format::Csv => lines::write(out, values, part, ",", true),
+        Format::Dat => lines::write(out, values, part, " ", false),
     }
 }
 
@@ -144,7 +173,7 @@ fn record(values: &Encoded, options: &ExportOptions, plan: &[(PathBuf, Part)]) -
     let mut hash = Hash::default();
     (0..count).for_each(|at| hash.add(values.decoded(at)));
     ExportRecord {
-        kind: KIND.into(),
+        kind: ExportRecord::KIND.into(),
         crate_version: env!("CARGO_PKG_VERSION").into(),
         format: options.format,
         bits: values.depth,

@@ -32,6 +32,18 @@ pub enum Format {
     #[cfg(feature = "image")]
     #[serde(rename = "exr-layers")]
     ExrLayers,
+    /// Bare little-endian numbers in the order of the table, and a text file that says which.
+    Raw,
+    /// Four `f32` a texel without a header, what FAST reads as `-init`.
+    Fast,
+    /// C++ source text with the blue-noise textures of pbrt-v4, `[texture][x][y]`.
+    Pbrt,
+    /// A header for C99 and C++ with an array and functions that read it.
+    C,
+    /// Text, one sample a line, numbers between commas below the names of columns.
+    Csv,
+    /// Text, one sample a line, numbers between blanks.
+    Dat,
 }
 
 /// The numbers that a file holds.
@@ -96,8 +108,9 @@ pub struct ExportOptions {
     /// given, `{kind}` for `scalar`, `vec2`, `vec3` or `vec4`, `{width}`, `{height}` and `{frames}` for
     /// lengths, `{sample}`, `{dims}` and `{frame}` for what of the table is in a file: 3, 0-3, 17.
     ///
-    /// If it is not given: `{name}` followed by `_s{sample}` where files differ in samples, `_d{dims}` where
-    /// they differ in dimensions, and `_{frame}` where they differ in frames.
+    /// If it is not given: `{name}`, followed by `_s{sample}` where files differ in samples and `_d{dims}`
+    /// where they differ in dimensions. Where each frame has a file,
+    /// `_{kind}_2Dx1D_{width}x{height}x{frames}` stands before these and `_{frame}` behind them.
     pub name: Option<String>,
 }
 
@@ -139,9 +152,15 @@ impl Format {
         Self::Exr,
         #[cfg(feature = "image")]
         Self::ExrLayers,
+        Self::Raw,
+        Self::Fast,
+        Self::Pbrt,
+        Self::C,
+        Self::Csv,
+        Self::Dat,
     ];
 
-    /// `atlas`, `slices`, `ktx2`, `exr` or `exr-layers`.
+    /// `atlas`, `slices`, `ktx2`, `exr`, `exr-layers`, `raw`, `fast`, `pbrt`, `c`, `csv`, `dat`.
     pub fn name(self) -> &'static str {
         match self {
             #[cfg(feature = "image")]
@@ -153,10 +172,17 @@ impl Format {
             Self::Exr => "exr",
             #[cfg(feature = "image")]
             Self::ExrLayers => "exr-layers",
+            Self::Raw => "raw",
+            Self::Fast => "fast",
+            Self::Pbrt => "pbrt",
+            Self::C => "c",
+            Self::Csv => "csv",
+            Self::Dat => "dat",
         }
     }
 
-    /// What a file of it can hold. A texture has one sample of a pixel, and up to four dimensions.
+    /// What a file of it can hold. A texture has one sample of a pixel, and up to four dimensions; what is no
+    /// texture holds a whole table.
     pub(super) fn rule(self) -> Rule {
         use Depth::{F32, Half, U8, U16};
         let texture = |extension, depths, all_frames| Rule {
@@ -165,6 +191,13 @@ impl Format {
             most_dims: 4,
             all_samples: false,
             all_frames,
+        };
+        let whole = |extension, depths| Rule {
+            extension,
+            depths,
+            most_dims: usize::MAX,
+            all_samples: true,
+            all_frames: true,
         };
         match self {
             #[cfg(feature = "image")]
@@ -176,6 +209,12 @@ impl Format {
             Self::Exr => texture("exr", &[F32, Half], false),
             #[cfg(feature = "image")]
             Self::ExrLayers => texture("exr", &[F32, Half], true),
+            Self::Raw => whole("raw", &[F32, U16, U8, Half]),
+            Self::Fast => texture("bin", &[F32], true),
+            Self::Pbrt => whole("cpp", &[U16]),
+            Self::C => whole("h", &[F32, U16, U8]),
+            Self::Csv => whole("csv", &[F32]),
+            Self::Dat => whole("dat", &[F32]),
         }
     }
 }

@@ -1,10 +1,12 @@
-//! Tables out of other people's files: arrays of any plain type, order and number of axes, and text.
+//! Tables out of other people's files: arrays of any plain type, order and number of axes, bare numbers,
+//! text, C and C++; and out of what an export has written.
 
 #[cfg(feature = "image")]
 mod exr;
 mod ktx2;
 #[cfg(feature = "image")]
 mod png;
+mod raw;
 mod recorded;
 mod set;
 mod source;
@@ -16,10 +18,12 @@ use std::path::{Path, PathBuf};
 use ndarray::{ArrayD, IxDyn, ShapeBuilder};
 
 use self::set::Pattern;
-use self::source::{Problem, Source, source};
+use self::source::Source;
+use super::dtype::Dtype;
 use super::header::{Fault, GIVE_NPY};
 use super::layout::{Axis, Layout};
 use super::levels::Scale;
+use super::text::Unread;
 use crate::error::{ImportError, TableError};
 use crate::table::SampleTable;
 
@@ -70,6 +74,15 @@ pub struct ImportOptions {
     /// Dimensions of a sample of a list; the length of the last axis or of a line of text, up to 16, if it is
     /// not given.
     pub dims: Option<usize>,
+    /// Numbers that a sample takes in a list, of which the first `dims` are read, such as 4 in a texture of
+    /// RGBA; only what is read if it is not given.
+    pub channels: Option<usize>,
+    /// The type of the numbers of a file that has no header. If it is not given, a text beside the file says
+    /// it, whose name is the file's and `.txt`: lines `dtype: <f4`, `shape: 1, 64, 64, 1, 2`, `axes: frame,
+    /// y, x, sample, dim` and, of levels, `levels: 65536`; those of axes and of levels may be missing.
+    pub dtype: Option<Dtype>,
+    /// The name of the array, where a C or C++ source text has several.
+    pub array: Option<String>,
 }
 
 /// A table, and what was taken for what.
@@ -92,10 +105,45 @@ pub struct Imported {
     pub first_level: u64,
     /// Values of 1 that became the largest number below.
     pub ones: usize,
-    /// Channels of a texture that were left out, because they repeat another or are constant.
+    /// Channels of a texture that were left out, because they are constant or like another.
     pub left_out: Vec<usize>,
     /// The record of the export that said how to read the file.
     pub record: Option<PathBuf>,
+}
+
+enum Problem {
+    Fault(Fault),
+    Import(ImportError),
+}
+
+impl Problem {
+    fn of(self, path: &Path) -> TableError {
+        match self {
+            Self::Fault(fault) => fault.of(path),
+            Self::Import(problem) => TableError::Import { path: path.into(), problem },
+        }
+    }
+}
+
+impl<F: Into<Fault>> From<F> for Problem {
+    fn from(fault: F) -> Self {
+        Self::Fault(fault.into())
+    }
+}
+
+impl From<ImportError> for Problem {
+    fn from(problem: ImportError) -> Self {
+        Self::Import(problem)
+    }
+}
+
+impl From<Unread> for Problem {
+    fn from(unread: Unread) -> Self {
+        match unread {
+            Unread::Io(error) => error.into(),
+            Unread::Import(problem) => problem.into(),
+        }
+    }
 }
 
 impl SampleTable {
@@ -125,26 +173,21 @@ impl SampleTable {
     /// ```
     pub fn import(path: impl AsRef<Path>, options: &ImportOptions) -> Result<Imported, TableError> {
         let path = path.as_ref();
-        import(path, options).map_err(|problem| match problem {
-            Problem::Fault(fault) => fault.of(path),
-            Problem::Import(problem) => TableError::Import { path: path.into(), problem },
-        })
+        match recorded::import(path, options) {
+            Some(imported) => imported,
+            None => import(path, options).map_err(|problem| problem.of(path)),
+        }
     }
 }
 
 fn import(path: &Path, options: &ImportOptions) -> Result<Imported, Problem> {
-    if *options == ImportOptions::default()
-        && let Some(record) = recorded::find(path)?
-    {
-        return recorded::read(path, record);
-    }
     match Pattern::of(path) {
         Some(pattern) => {
             let source = set::read(&pattern, options)?;
             let options = ImportOptions { levels: options.levels, ..ImportOptions::default() };
             arranged(source, &options)
         }
-        None => arranged(source(path, options)?, options),
+        None => arranged(source::read(path, options)?, options),
     }
 }
 
@@ -152,7 +195,7 @@ fn import(path: &Path, options: &ImportOptions) -> Result<Imported, Problem> {
 fn arranged(mut source: Source, options: &ImportOptions) -> Result<Imported, Problem> {
     let is_said = !options.axes.is_empty() || options.lengths().is_some();
     let left_out = if is_said { Vec::new() } else { source.tell_frames_and_channels() };
-    let Source { values, shape, fortran, dtype, descr, levels, axes } = source;
+    let Source { values, shape, axes, fortran, dtype, levels, descr } = source;
     let layout = Layout::of(&shape, &axes, options)?;
     let scale = Scale::of(&values, dtype, options.levels.or(levels))?;
     let ones = if scale.levels.is_none() { values.iter().filter(|&&value| value == 1.0).count() } else { 0 };
@@ -222,6 +265,9 @@ impl fmt::Display for ImportOptions {
             ("width", number(self.width)),
             ("spp", number(self.spp)),
             ("dims", number(self.dims)),
+            ("channels", number(self.channels)),
+            ("dtype", self.dtype.map(|dtype| quoted(&dtype.to_string()))),
+            ("array", self.array.as_deref().map(quoted)),
         ];
         let flags = flags.into_iter().filter_map(|(flag, value)| Some(format!("--{flag} {}", value?)));
         out.write_str(&flags.collect::<Vec<_>>().join(" "))
@@ -273,19 +319,23 @@ pub(super) fn advice(path: &Path) -> String {
     }
     let flags = options.to_string();
     let flags = if flags.is_empty() { flags } else { format!("{flags} ") };
-    let [from, to] = [path, &path.with_extension("table.npy")].map(quoted);
+    let [from, to] = [path, &path.with_extension("table.npy")].map(quoted_path);
     format!("run `fsot import {from} {flags}--out {to}`, or SampleTable::import with these options")
 }
 
 /// A path as a shell reads it.
-fn quoted(path: &Path) -> String {
+fn quoted_path(path: &Path) -> String {
     let path = path.to_string_lossy();
     // A name that begins like a flag is none behind its folder.
-    let path = if path.starts_with('-') { format!("./{path}") } else { path.into_owned() };
+    if path.starts_with('-') { quoted(&format!("./{path}")) } else { quoted(&path) }
+}
+
+/// A word as a shell reads it.
+fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "/._-+:@%,".contains(c);
-    if !path.is_empty() && path.chars().all(is_plain) {
-        path
+    if !word.is_empty() && word.chars().all(is_plain) {
+        word.into()
     } else {
-        format!("'{}'", path.replace('\'', r"'\''"))
+        format!("'{}'", word.replace('\'', r"'\''"))
     }
 }
