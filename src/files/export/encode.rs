@@ -2,6 +2,7 @@
 
 use half::f16;
 
+use super::diffuse;
 use super::options::{Depth, ExportOptions, Format, Rounding};
 use crate::table::SampleTable;
 use crate::table::domain::BELOW_ONE;
@@ -14,11 +15,18 @@ const HALF_BELOW_ONE: f16 = f16::from_bits(0x3bff);
 pub(super) struct Encoded<'a> {
     table: &'a SampleTable,
     pub(super) depth: Depth,
+    /// Levels that do not follow from a value alone.
+    levels: Option<Vec<u16>>,
 }
 
 impl<'a> Encoded<'a> {
     pub(super) fn new(table: &'a SampleTable, options: &ExportOptions) -> Self {
-        Self { table, depth: options.depth() }
+        let depth = options.depth();
+        let levels = match (options.rounding, depth.levels()) {
+            (Rounding::Diffuse, Some(levels)) => Some(diffuse::levels(table, levels)),
+            _ => None,
+        };
+        Self { table, depth, levels }
     }
 
     pub(super) fn extent(&self) -> Extent {
@@ -31,6 +39,9 @@ impl<'a> Encoded<'a> {
 
     /// The level of the value at this position of the table's memory; that of floating point is its bits.
     pub(super) fn number(&self, at: usize) -> u32 {
+        if let Some(levels) = &self.levels {
+            return levels[at].into();
+        }
         let value = self.table.values()[at];
         match self.depth {
             // Exact: a value below 1 by a power of two.

@@ -3,6 +3,7 @@
 //! [`parts`] says which part of a table is in which file, [`encode`] what number a value becomes; a format
 //! is a rule ([`options`]) and a function that writes one file.
 
+mod diffuse;
 mod encode;
 #[cfg(feature = "image")]
 mod exr;
