@@ -1,5 +1,7 @@
 //! What stands against making a table of somebody else's file.
 
+use std::path::PathBuf;
+
 use thiserror::Error;
 
 use super::{ExtentError, Short};
@@ -181,18 +183,6 @@ pub enum ImportError {
         /// Numbers that are read.
         dims: usize,
     },
-    /// The record of an export contradicts itself.
-    #[error("it {problem}: export the table again, or remove it and import each file by itself")]
-    Record {
-        /// What the record does.
-        problem: String,
-    },
-    /// The files of an export hold other values than their record says.
-    #[error(
-        "its files hold other values than were exported: export the table again, \
-         or remove this record to import what is there"
-    )]
-    Changed,
     /// A text file without numbers.
     #[error("there are no numbers in it: give a .npy file, or numbers between blanks or commas")]
     Empty,
@@ -240,5 +230,114 @@ pub enum ImportError {
         shape: [usize; 5],
         /// Which axis, or how many values.
         problem: ExtentError,
+    },
+    /// A texture that breaks off, or says what cannot be.
+    #[error("the {kind} cannot be read ({reason}): write it anew, or give another file")]
+    Damaged {
+        /// What it is.
+        kind: &'static str,
+        /// The decoder's word.
+        reason: String,
+    },
+    /// A texture of a kind that is no array of numbers.
+    #[error("the {kind} {what}: {advice}")]
+    Unsupported {
+        /// What it is.
+        kind: &'static str,
+        /// What it has.
+        what: String,
+        /// What is read.
+        advice: &'static str,
+    },
+    /// PNG and EXR are read by crates that were left out.
+    #[error("PNG and EXR are read with the feature `image` of this library alone: build it with that")]
+    Feature,
+    /// No file has a name of the pattern.
+    #[error("no file is called so with a number in the place of each brace: give the name of one as it is")]
+    NoFiles,
+    /// More files than a table has frames.
+    #[error("{files} files are called so, more than {most}: move those that do not belong to it")]
+    TooManyFiles {
+        /// Files of such names.
+        files: usize,
+        /// Most that are read.
+        most: usize,
+    },
+    /// Two names have the same number.
+    #[error("{names:?} have the same number: move one of them")]
+    SameNumber {
+        /// The names.
+        names: [String; 2],
+    },
+    /// A number is left out.
+    #[error("after number {before} of {place} comes {after}: bring the files between them, or rename those")]
+    Gap {
+        /// Whose number.
+        place: &'static str,
+        /// The last before the gap.
+        before: u64,
+        /// The first behind it.
+        after: u64,
+    },
+    /// Files for some frames only.
+    #[error("no file is there for frame {frame}, sample {sample}, dims {dim}: bring it")]
+    MissingFile {
+        /// Frame, as in the names.
+        frame: u64,
+        /// Sample of a pixel.
+        sample: u64,
+        /// First dimension.
+        dim: u64,
+    },
+    /// Files of different kinds.
+    #[error("{names:?} hold numbers of different types: write all of them alike")]
+    Unlike {
+        /// The first file and one of another kind.
+        names: [String; 2],
+    },
+    /// Files of different sizes.
+    #[error("the files have the shapes {shapes:?} [frame, y, x, sample, dim]: bring files of one shape")]
+    UnlikeShapes {
+        /// Shapes that do not go together.
+        shapes: Vec<Vec<usize>>,
+    },
+    /// The record beside an export says what cannot be.
+    #[error(
+        "its record {} is damaged ({reason}): export the table again, or take the record away and import the \
+         file by itself",
+        path.display()
+    )]
+    Record {
+        /// The record.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// The record beside an export is of other numbers.
+    #[error(
+        "its record {} is of other numbers (SHA-256 {record}) than it holds ({found}): export the table \
+         again, or take the record away and import the file by itself",
+        path.display()
+    )]
+    OtherValues {
+        /// The record.
+        path: PathBuf,
+        /// Hash according to the record.
+        record: String,
+        /// Hash of the values.
+        found: String,
+    },
+    /// A file holds more or fewer numbers than its record says.
+    #[error(
+        "{name} has {given} numbers, and its record speaks of {expected}: export the table again, or take \
+         the record away and import the file by itself"
+    )]
+    OtherCount {
+        /// The file.
+        name: String,
+        /// Numbers in it.
+        given: usize,
+        /// Numbers according to the record.
+        expected: usize,
     },
 }

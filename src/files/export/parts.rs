@@ -27,7 +27,7 @@ pub struct Part {
 impl Part {
     /// Positions of the numbers of a row in the memory of the table: pixel by pixel from the left, sample by
     /// sample, dimension by dimension.
-    pub(super) fn row(
+    pub(in crate::files) fn row(
         &self,
         extent: Extent,
         dims: usize,
@@ -46,7 +46,7 @@ impl Part {
     }
 
     /// Lengths `[frame, y, x, sample, dim]` of the part of a table of this extent.
-    pub(super) fn shape(&self, extent: Extent) -> [usize; 5] {
+    pub(in crate::files) fn shape(&self, extent: Extent) -> [usize; 5] {
         [self.frames.len(), extent.height, extent.width, self.samples.len(), self.dims.len()]
     }
 }

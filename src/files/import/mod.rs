@@ -1,22 +1,29 @@
-//! Tables out of other people's files: arrays of any plain type, order and number of axes, bare numbers, text,
-//! C and C++; and out of what an export has written.
+//! Tables out of other people's files: arrays of any plain type, order and number of axes, textures, bare
+//! numbers, text, and sources of C and C++.
 
+#[cfg(feature = "image")]
+mod exr;
+mod ktx2;
+#[cfg(feature = "image")]
+mod png;
 mod raw;
 mod recorded;
+mod set;
 mod source;
+mod written;
 
 use std::fmt;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use ndarray::{ArrayD, IxDyn, ShapeBuilder};
 
-use self::source::Source;
+use self::set::Pattern;
+use self::source::{Problem, Source, source};
 use super::dtype::Dtype;
 use super::header::{Fault, GIVE_NPY};
 use super::layout::{Axis, Layout};
 use super::levels::Scale;
-use super::text::Unread;
 use crate::error::{ImportError, TableError};
 use crate::table::SampleTable;
 
@@ -98,41 +105,10 @@ pub struct Imported {
     pub first_level: u64,
     /// Values of 1 that became the largest number below.
     pub ones: usize,
-}
-
-enum Problem {
-    Fault(Fault),
-    Import(ImportError),
-}
-
-impl Problem {
-    fn of(self, path: &Path) -> TableError {
-        match self {
-            Self::Fault(fault) => fault.of(path),
-            Self::Import(problem) => TableError::Import { path: path.into(), problem },
-        }
-    }
-}
-
-impl<F: Into<Fault>> From<F> for Problem {
-    fn from(fault: F) -> Self {
-        Self::Fault(fault.into())
-    }
-}
-
-impl From<ImportError> for Problem {
-    fn from(problem: ImportError) -> Self {
-        Self::Import(problem)
-    }
-}
-
-impl From<Unread> for Problem {
-    fn from(unread: Unread) -> Self {
-        match unread {
-            Unread::Io(error) => error.into(),
-            Unread::Import(problem) => problem.into(),
-        }
-    }
+    /// Channels of a texture that were left out, because they repeat another or are constant.
+    pub left_out: Vec<usize>,
+    /// The record of the export that said how to read the file.
+    pub record: Option<PathBuf>,
 }
 
 impl SampleTable {
@@ -162,20 +138,38 @@ impl SampleTable {
     /// ```
     pub fn import(path: impl AsRef<Path>, options: &ImportOptions) -> Result<Imported, TableError> {
         let path = path.as_ref();
-        match recorded::import(path, options) {
-            Some(imported) => imported,
-            None => import(path, options).map_err(|problem| problem.of(path)),
-        }
+        import(path, options).map_err(|problem| match problem {
+            Problem::Fault(fault) => fault.of(path),
+            Problem::Import(problem) => TableError::Import { path: path.into(), problem },
+        })
     }
 }
 
 fn import(path: &Path, options: &ImportOptions) -> Result<Imported, Problem> {
-    let Source { values, shape, axes, fortran, dtype, levels, descr } = source::read(path, options)?;
+    if *options == ImportOptions::default()
+        && let Some(record) = recorded::find(path)?
+    {
+        return recorded::read(path, record);
+    }
+    match Pattern::of(path) {
+        Some(pattern) => {
+            let source = set::read(&pattern, options)?;
+            let options = ImportOptions { levels: options.levels, ..ImportOptions::default() };
+            arranged(source, &options)
+        }
+        None => arranged(source(path, options)?, options),
+    }
+}
+
+/// A table of the numbers.
+fn arranged(mut source: Source, options: &ImportOptions) -> Result<Imported, Problem> {
+    let is_said = !options.axes.is_empty() || options.lengths().is_some();
+    let left_out = if is_said { Vec::new() } else { source.tell_frames_and_channels() };
+    let Source { values, shape, fortran, dtype, descr, levels, axes } = source;
     let layout = Layout::of(&shape, &axes, options)?;
     let scale = Scale::of(&values, dtype, options.levels.or(levels))?;
     let ones = if scale.levels.is_none() { values.iter().filter(|&&value| value == 1.0).count() } else { 0 };
-    let mut table = Vec::new();
-    table.try_reserve_exact(values.len()).map_err(io::Error::from)?;
+    let mut table = source::reserved(values.len())?;
     if fortran || !layout.axes.is_empty() {
         // Axes of length 1 that were dropped change nothing in the order.
         let kept =
@@ -199,6 +193,8 @@ fn import(path: &Path, options: &ImportOptions) -> Result<Imported, Problem> {
         levels: scale.levels,
         first_level: scale.first,
         ones,
+        left_out,
+        record: None,
     })
 }
 
@@ -250,7 +246,7 @@ impl fmt::Display for ImportOptions {
 
 impl fmt::Display for Imported {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        let Self { dtype, shape, axes, levels, first_level, ones, .. } = self;
+        let Self { dtype, shape, axes, levels, first_level, ones, left_out, record, .. } = self;
         write!(out, "{} of shape {shape:?} as ", dtype.trim_matches(['\'', '"']))?;
         match axes.as_slice() {
             [] => write!(out, "a list of samples in the order of a table")?,
@@ -261,9 +257,16 @@ impl fmt::Display for Imported {
             (Some(levels), 0) => write!(out, ", {levels} levels as (v + 1/2) / {levels}")?,
             (Some(levels), _) => write!(out, ", ranks from 1 as (v - 1/2) / {levels}")?,
         }
-        match ones {
-            0 => Ok(()),
-            ones => write!(out, ", {ones} of them 1, which became the largest number below"),
+        if *ones > 0 {
+            write!(out, ", {ones} of them 1, which became the largest number below")?;
+        }
+        if !left_out.is_empty() {
+            let names: Vec<String> = left_out.iter().map(usize::to_string).collect();
+            write!(out, ", without channel {}, constant or like another", names.join(", "))?;
+        }
+        match record {
+            Some(record) => write!(out, ", as {} says", record.display()),
+            None => Ok(()),
         }
     }
 }
