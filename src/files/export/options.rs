@@ -283,6 +283,13 @@ macro_rules! by_name {
             }
         }
 
+        impl $type {
+            /// All names, for help texts.
+            pub fn names() -> String {
+                Self::ALL.iter().map(|one| one.name()).collect::<Vec<_>>().join(", ")
+            }
+        }
+
         impl FromStr for $type {
             type Err = String;
 
