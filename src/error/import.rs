@@ -1,7 +1,5 @@
 //! What stands against making a table of somebody else's file.
 
-use std::path::PathBuf;
-
 use thiserror::Error;
 
 use super::{ExtentError, Short};
@@ -183,6 +181,18 @@ pub enum ImportError {
         /// Numbers that are read.
         dims: usize,
     },
+    /// The record of an export contradicts itself.
+    #[error("it {problem}: export the table again, or remove it and import each file by itself")]
+    Record {
+        /// What the record does.
+        problem: String,
+    },
+    /// The files of an export hold other values than their record says.
+    #[error(
+        "its files hold other values than were exported: export the table again, \
+         or remove this record to import what is there"
+    )]
+    Changed,
     /// A text file without numbers.
     #[error("there are no numbers in it: give a .npy file, or numbers between blanks or commas")]
     Empty,
@@ -300,44 +310,5 @@ pub enum ImportError {
     UnlikeShapes {
         /// Shapes that do not go together.
         shapes: Vec<Vec<usize>>,
-    },
-    /// The record beside an export says what cannot be.
-    #[error(
-        "its record {} is damaged ({reason}): export the table again, or take the record away and import the \
-         file by itself",
-        path.display()
-    )]
-    Record {
-        /// The record.
-        path: PathBuf,
-        /// What is wrong with it.
-        reason: String,
-    },
-    /// The record beside an export is of other numbers.
-    #[error(
-        "its record {} is of other numbers (SHA-256 {record}) than it holds ({found}): export the table \
-         again, or take the record away and import the file by itself",
-        path.display()
-    )]
-    OtherValues {
-        /// The record.
-        path: PathBuf,
-        /// Hash according to the record.
-        record: String,
-        /// Hash of the values.
-        found: String,
-    },
-    /// A file holds more or fewer numbers than its record says.
-    #[error(
-        "{name} has {given} numbers, and its record speaks of {expected}: export the table again, or take \
-         the record away and import the file by itself"
-    )]
-    OtherCount {
-        /// The file.
-        name: String,
-        /// Numbers in it.
-        given: usize,
-        /// Numbers according to the record.
-        expected: usize,
     },
 }

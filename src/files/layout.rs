@@ -57,6 +57,9 @@ impl FromStr for Axis {
 /// Longest last axis that is taken for the dimensions of a sample; a longer one is a row of pixels.
 const MOST_COLUMNS: usize = 16;
 
+/// The last axes of pictures.
+pub(super) const PICTURE: [Axis; 3] = [Axis::Y, Axis::X, Axis::Dim];
+
 /// Where the axes of an array go.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Layout {
@@ -67,14 +70,15 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// The layout of an array of this shape, whose axes are `known` if its format says them: it ends in
-    /// rows, columns and channels then.
+    /// The layout of an array of this shape, whose axes are `known` if the file names them itself.
     pub(super) fn of(shape: &[usize], known: &[Axis], options: &ImportOptions) -> Result<Self, ImportError> {
         let layout = match options.lengths() {
+            Some(lengths) if options.axes.is_empty() && known.ends_with(&PICTURE) => {
+                Self::list(shape, of_picture(shape, lengths))?
+            }
+            None if options.axes.is_empty() && !known.is_empty() => Self::named(shape, known)?,
             None if !options.axes.is_empty() => Self::named(shape, &options.axes)?,
             Some(_) if !options.axes.is_empty() => return Err(ImportError::AxesAndLengths),
-            Some(lengths) if !known.is_empty() => Self::list(shape, of_picture(shape, lengths))?,
-            None if !known.is_empty() => Self::named(shape, known)?,
             // Five axes are those of a table, unless they have other lengths than are given.
             Some(lengths)
                 if shape.len() == 5

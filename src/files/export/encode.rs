@@ -91,17 +91,6 @@ impl SampleTable {
     }
 }
 
-/// The value that a number of a file stands for; `None` if there is no such number.
-pub(in crate::files) fn decoded(depth: Depth, number: f64) -> Option<f32> {
-    match depth.levels() {
-        Some(levels) if number < f64::from(levels) && number >= 0.0 && number.fract() == 0.0 => {
-            Some(decode(depth, number as u32))
-        }
-        Some(_) => None,
-        None => Some(number as f32),
-    }
-}
-
 /// The value that a number of a file stands for.
 pub(super) fn decode(depth: Depth, number: u32) -> f32 {
     match depth {

@@ -24,10 +24,8 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use self::encode::Encoded;
-pub(super) use self::encode::decoded;
 pub use self::options::{Depth, ExportOptions, Format, Rounding};
-pub(super) use self::parts::Part;
-pub(super) use self::record::KIND;
+use self::parts::Part;
 pub use self::record::{ExportRecord, RecordedFile};
 use super::metadata::Hash;
 use super::whole::{self, WholeFile};
@@ -175,7 +173,7 @@ fn record(values: &Encoded, options: &ExportOptions, plan: &[(PathBuf, Part)]) -
     let mut hash = Hash::default();
     (0..count).for_each(|at| hash.add(values.decoded(at)));
     ExportRecord {
-        kind: KIND.into(),
+        kind: ExportRecord::KIND.into(),
         crate_version: env!("CARGO_PKG_VERSION").into(),
         format: options.format,
         bits: values.depth,

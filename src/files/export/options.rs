@@ -110,8 +110,9 @@ pub struct ExportOptions {
     /// given, `{kind}` for `scalar`, `vec2`, `vec3` or `vec4`, `{width}`, `{height}` and `{frames}` for
     /// lengths, `{sample}`, `{dims}` and `{frame}` for what of the table is in a file: 3, 0-3, 17.
     ///
-    /// If it is not given: `{name}` followed by `_s{sample}` where files differ in samples, `_d{dims}` where
-    /// they differ in dimensions, and `_{frame}` where they differ in frames.
+    /// If it is not given: `{name}`, followed by `_s{sample}` where files differ in samples and `_d{dims}`
+    /// where they differ in dimensions. Where each frame has a file,
+    /// `_{kind}_2Dx1D_{width}x{height}x{frames}` stands before these and `_{frame}` behind them.
     pub name: Option<String>,
 }
 

@@ -63,7 +63,7 @@ pub(super) fn files(
         path.file_stem().filter(|_| has_extension(path, rule.extension)).and_then(|stem| stem.to_str());
     let stem = stem.ok_or_else(|| ExportError::FileName { path: path.into(), extension: rule.extension })?;
     let parts = parts(&rule, extent, dims);
-    let default = default_name(&parts);
+    let default = default_name(&parts, rule.all_frames);
     let pattern = options.name.as_deref().unwrap_or(&default);
     let mut files: Vec<(PathBuf, Part)> = Vec::with_capacity(parts.len());
     for part in parts {
@@ -92,16 +92,18 @@ fn parts(rule: &Rule, extent: Extent, dims: usize) -> Vec<Part> {
         .collect()
 }
 
-/// Tells apart what needs it. Slices are numbered even where there is one.
-fn default_name(parts: &[Part]) -> String {
+/// Tells apart what needs it. Files of single frames say what they are frames of, as those of spatio-temporal
+/// blue noise do, and are numbered even where there is one.
+fn default_name(parts: &[Part], all_frames: bool) -> String {
     let differ = |of: fn(&Part) -> &Range<usize>| parts.iter().any(|part| of(part) != of(&parts[0]));
     let mut name = String::from("{name}");
-    for (differs, suffix) in [
+    for (is_told, suffix) in [
+        (!all_frames, "_{kind}_2Dx1D_{width}x{height}x{frames}"),
         (differ(|part| &part.samples), "_s{sample}"),
         (differ(|part| &part.dims), "_d{dims}"),
-        (differ(|part| &part.frames), "_{frame}"),
+        (!all_frames, "_{frame}"),
     ] {
-        name += if differs { suffix } else { "" };
+        name += if is_told { suffix } else { "" };
     }
     name
 }

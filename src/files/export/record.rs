@@ -5,10 +5,9 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::options::{Depth, Format, Rounding};
-use super::parts::Part;
 
 /// Kind and version of the file; the number grows when an old reader would misunderstand a new file.
-pub(in crate::files) const KIND: &str = "fsot export 1";
+const KIND: &str = "fsot export 1";
 
 /// How to read the files of an export: by this, [`SampleTable::import`](crate::SampleTable::import) makes a
 /// table of them again.
@@ -51,14 +50,10 @@ pub struct RecordedFile {
     pub dims: [usize; 2],
 }
 
-impl RecordedFile {
-    pub(in crate::files) fn part(&self) -> Part {
-        let [frames, samples, dims] = [self.frames, self.samples, self.dims].map(|[start, end]| start..end);
-        Part { frames, samples, dims }
-    }
-}
-
 impl ExportRecord {
+    /// What [`kind`](Self::kind) is.
+    pub(in crate::files) const KIND: &str = KIND;
+
     /// Where the record of an export lies: the path that was given, and `.json`.
     pub fn path_beside(path: &Path) -> PathBuf {
         let mut name = path.as_os_str().to_owned();

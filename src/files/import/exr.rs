@@ -8,7 +8,8 @@ use exr::image::FlatSamples;
 use exr::meta::MetaData;
 use exr::prelude::{ReadChannels, ReadLayers, read as reader};
 
-use super::source::{Problem, Source, reserved};
+use super::Problem;
+use super::source::{Source, reserved};
 use crate::error::ImportError;
 use crate::files::dtype::Dtype;
 use crate::files::layout::Axis;

@@ -2,7 +2,8 @@
 
 use ktx2::Reader;
 
-use super::source::{Problem, Source, reserved};
+use super::Problem;
+use super::source::{Source, reserved};
 use crate::error::ImportError;
 use crate::files::dtype::Dtype;
 use crate::files::layout::Axis;

@@ -1,5 +1,5 @@
-//! Tables out of other people's files: arrays of any plain type, order and number of axes, textures, bare
-//! numbers, text, and sources of C and C++.
+//! Tables out of other people's files: arrays of any plain type, order and number of axes, bare numbers,
+//! text, C and C++; and out of what an export has written.
 
 #[cfg(feature = "image")]
 mod exr;
@@ -19,11 +19,12 @@ use std::path::{Path, PathBuf};
 use ndarray::{ArrayD, IxDyn, ShapeBuilder};
 
 use self::set::Pattern;
-use self::source::{Problem, Source, source};
+use self::source::Source;
 use super::dtype::Dtype;
 use super::header::{Fault, GIVE_NPY};
 use super::layout::{Axis, Layout};
 use super::levels::Scale;
+use super::text::Unread;
 use crate::error::{ImportError, TableError};
 use crate::table::SampleTable;
 
@@ -105,10 +106,45 @@ pub struct Imported {
     pub first_level: u64,
     /// Values of 1 that became the largest number below.
     pub ones: usize,
-    /// Channels of a texture that were left out, because they repeat another or are constant.
+    /// Channels of a texture that were left out, because they are constant or like another.
     pub left_out: Vec<usize>,
     /// The record of the export that said how to read the file.
     pub record: Option<PathBuf>,
+}
+
+enum Problem {
+    Fault(Fault),
+    Import(ImportError),
+}
+
+impl Problem {
+    fn of(self, path: &Path) -> TableError {
+        match self {
+            Self::Fault(fault) => fault.of(path),
+            Self::Import(problem) => TableError::Import { path: path.into(), problem },
+        }
+    }
+}
+
+impl<F: Into<Fault>> From<F> for Problem {
+    fn from(fault: F) -> Self {
+        Self::Fault(fault.into())
+    }
+}
+
+impl From<ImportError> for Problem {
+    fn from(problem: ImportError) -> Self {
+        Self::Import(problem)
+    }
+}
+
+impl From<Unread> for Problem {
+    fn from(unread: Unread) -> Self {
+        match unread {
+            Unread::Io(error) => error.into(),
+            Unread::Import(problem) => problem.into(),
+        }
+    }
 }
 
 impl SampleTable {
@@ -138,26 +174,21 @@ impl SampleTable {
     /// ```
     pub fn import(path: impl AsRef<Path>, options: &ImportOptions) -> Result<Imported, TableError> {
         let path = path.as_ref();
-        import(path, options).map_err(|problem| match problem {
-            Problem::Fault(fault) => fault.of(path),
-            Problem::Import(problem) => TableError::Import { path: path.into(), problem },
-        })
+        match recorded::import(path, options) {
+            Some(imported) => imported,
+            None => import(path, options).map_err(|problem| problem.of(path)),
+        }
     }
 }
 
 fn import(path: &Path, options: &ImportOptions) -> Result<Imported, Problem> {
-    if *options == ImportOptions::default()
-        && let Some(record) = recorded::find(path)?
-    {
-        return recorded::read(path, record);
-    }
     match Pattern::of(path) {
         Some(pattern) => {
             let source = set::read(&pattern, options)?;
             let options = ImportOptions { levels: options.levels, ..ImportOptions::default() };
             arranged(source, &options)
         }
-        None => arranged(source(path, options)?, options),
+        None => arranged(source::read(path, options)?, options),
     }
 }
 
@@ -165,7 +196,7 @@ fn import(path: &Path, options: &ImportOptions) -> Result<Imported, Problem> {
 fn arranged(mut source: Source, options: &ImportOptions) -> Result<Imported, Problem> {
     let is_said = !options.axes.is_empty() || options.lengths().is_some();
     let left_out = if is_said { Vec::new() } else { source.tell_frames_and_channels() };
-    let Source { values, shape, fortran, dtype, descr, levels, axes } = source;
+    let Source { values, shape, axes, fortran, dtype, levels, descr } = source;
     let layout = Layout::of(&shape, &axes, options)?;
     let scale = Scale::of(&values, dtype, options.levels.or(levels))?;
     let ones = if scale.levels.is_none() { values.iter().filter(|&&value| value == 1.0).count() } else { 0 };

@@ -4,9 +4,11 @@ use std::io::{BufRead, Seek};
 
 use png::{BitDepth, ColorType, Decoder, DecodingError, Limits, Transformations};
 
-use super::source::{PICTURE, Problem, Source, reserved};
+use super::Problem;
+use super::source::{Source, reserved};
 use crate::error::ImportError;
 use crate::files::dtype::Dtype;
+use crate::files::layout::PICTURE;
 
 /// The first bytes of any file.
 pub(super) const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1a\n";

@@ -3,8 +3,8 @@
 use std::fs::{self, File};
 use std::path::Path;
 
-use super::ImportOptions;
-use super::source::{Problem, Source, numbers};
+use super::source::{Source, numbers};
+use super::{ImportOptions, Problem};
 use crate::error::{FormatError, ImportError};
 use crate::files::dtype::Dtype;
 use crate::files::export::raw::text_path;

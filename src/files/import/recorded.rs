@@ -1,119 +1,178 @@
-//! Files of an export, by the record beside them.
+//! What an export has written, by the record beside it.
 
 use std::fs;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use super::source::{Problem, Source, reserved, source};
+use serde::Deserialize;
+
+use super::super::export::{ExportRecord, Format, RecordedFile, fast};
+use super::super::header::shortened;
+use super::super::layout::Axis;
+use super::super::metadata;
 use super::{ImportOptions, Imported};
-use crate::error::{FormatError, ImportError};
-use crate::files::export::{self, ExportRecord, Format, Part};
-use crate::files::layout::Axis;
-use crate::files::metadata;
+use crate::error::{FormatError, ImportError, TableError};
 use crate::table::SampleTable;
 use crate::table::extent::Extent;
 
-/// The record beside a path, or at it; `None` where there is none.
-pub(super) fn find(path: &Path) -> Result<Option<(PathBuf, ExportRecord)>, Problem> {
-    let is_json = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
-    let place = if is_json { path.into() } else { ExportRecord::path_beside(path) };
-    if !fs::metadata(&place).is_ok_and(|found| found.is_file()) {
-        return Ok(None);
+/// Larger records are none.
+const MOST_BYTES: u64 = 256 << 20;
+
+/// Beginning of the kind of any record.
+const KIND: &str = "fsot export ";
+
+/// Imports all files of the record that lies beside this path, or there itself; `None` if there is none, or
+/// if options say how to read the file.
+pub(super) fn import(path: &Path, options: &ImportOptions) -> Option<Result<Imported, TableError>> {
+    if *options != ImportOptions::default() {
+        return None;
     }
-    let bytes = fs::read(&place)?;
-    let record: ExportRecord = match serde_json::from_slice(&bytes) {
-        Ok(record) => record,
-        // Somebody else's file of that name.
-        Err(_) if !is_json && !String::from_utf8_lossy(&bytes).contains(export::KIND) => return Ok(None),
-        Err(error) => return Err(ImportError::Record { path: place, reason: error.to_string() }.into()),
-    };
-    if record.kind != export::KIND {
-        let (field, expected) = ("kind", export::KIND.into());
-        return Err(FormatError::Field { field, given: record.kind, expected }.into());
+    let is_record = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
+    let place = if is_record { path.to_owned() } else { ExportRecord::path_beside(path) };
+    let record = read(&place)?;
+    let named = path.file_name().map(|name| name.to_string_lossy());
+    // A file beside those of the record has only its name from them.
+    let is_listed =
+        |record: &ExportRecord| record.files.iter().any(|file| Some(&*file.name) == named.as_deref());
+    if record.as_ref().is_ok_and(|record| !is_record && path.exists() && !is_listed(record)) {
+        return None;
     }
-    Ok(Some((place, record)))
+    Some(record.and_then(|record| all(&place, &record)))
 }
 
-/// Reads the files that the record lists.
-pub(super) fn read(path: &Path, (place, record): (PathBuf, ExportRecord)) -> Result<Imported, Problem> {
-    let bad = |reason: String| Problem::from(ImportError::Record { path: place.clone(), reason });
+/// The record at this place; `None` if what is there is none.
+fn read(place: &Path) -> Option<Result<ExportRecord, TableError>> {
+    #[derive(Deserialize)]
+    struct Any {
+        kind: String,
+    }
+    let found = fs::metadata(place).ok()?;
+    if !found.is_file() || found.len() > MOST_BYTES {
+        return None;
+    }
+    let bytes = fs::read(place).ok()?;
+    let Any { kind } = serde_json::from_slice(&bytes).ok()?;
+    if !kind.starts_with(KIND) {
+        return None;
+    }
+    let refuse = |problem| Some(Err(TableError::Format { path: place.into(), problem }));
+    if kind != ExportRecord::KIND {
+        let (given, expected) = (shortened(kind), ExportRecord::KIND.into());
+        return refuse(FormatError::Field { field: "kind", given, expected });
+    }
+    match serde_json::from_slice(&bytes) {
+        Ok(record) => Some(Ok(record)),
+        Err(error) => {
+            let reason = shortened(error.to_string());
+            refuse(FormatError::Json { line: error.line(), column: error.column(), reason })
+        }
+    }
+}
+
+/// A file of a record and what it holds.
+struct Piece {
+    path: PathBuf,
+    frames: Range<usize>,
+    samples: Range<usize>,
+    dims: Range<usize>,
+}
+
+fn all(place: &Path, record: &ExportRecord) -> Result<Imported, TableError> {
+    let refuse = |problem: &str| {
+        let problem = ImportError::Record { problem: problem.into() };
+        TableError::Import { path: place.into(), problem }
+    };
     let [frames, height, width, spp, dims] = record.shape;
     let extent = Extent { frames, height, width, spp };
-    extent.validate(dims).map_err(|problem| bad(problem.to_string()))?;
-    let mut values = reserved(extent.samples() * dims)?;
-    values.resize(values.capacity(), f32::NAN);
-    for file in &record.files {
-        let part = file.part();
-        let ends = [(&part.frames, frames), (&part.samples, spp), (&part.dims, dims)];
-        let is_name = Path::new(&file.name).file_name().is_some_and(|name| *name == *file.name);
-        if !is_name || ends.iter().any(|(range, len)| range.is_empty() || range.end > *len) {
-            return Err(bad(format!("{:?} holds what the table has not", file.name)));
-        }
-        let of_file = path.with_file_name(&file.name);
-        put(&mut values, &record, &part, numbers(&of_file, &part, &record, extent)?)
-            .map_err(|reason| bad(format!("{:?}: {reason}", file.name)))?;
+    extent.validate(dims)?;
+    let pieces: Option<Vec<Piece>> = record.files.iter().map(|file| piece(place, record, file)).collect();
+    let pieces =
+        pieces.ok_or_else(|| refuse("names a file in another folder, or more than its shape has"))?;
+    let held = |piece: &Piece| (piece.frames.len() * piece.samples.len() * piece.dims.len()) as u64;
+    let total = pieces.iter().map(held).fold(0, u64::saturating_add);
+    if total != (frames * spp * dims) as u64 {
+        return Err(refuse("holds a part of the table twice, or not at all"));
     }
-    if values.iter().any(|value| value.is_nan()) {
-        return Err(bad("its files do not hold the whole table".into()));
+    let mut imported = match &pieces[..] {
+        [piece] => one(piece, record, extent)?,
+        pieces => several(place, pieces, record, extent, refuse)?,
+    };
+    if metadata::sha256(imported.table.values()) != record.sha256.to_ascii_lowercase() {
+        return Err(TableError::Import { path: place.into(), problem: ImportError::Changed });
     }
-    let found = metadata::sha256(&values);
-    if !found.eq_ignore_ascii_case(&record.sha256) {
-        return Err(ImportError::OtherValues { path: place, record: record.sha256, found }.into());
-    }
-    Ok(Imported {
-        table: SampleTable::trusted(extent, dims, values),
-        dtype: format!("{} of {} bits", record.format, 8 * record.bits.bytes()),
-        shape: record.shape.to_vec(),
-        axes: Axis::ALL.to_vec(),
-        levels: record.bits.levels().map(u64::from),
-        first_level: 0,
-        ones: 0,
-        left_out: Vec::new(),
-        record: Some(place),
+    imported.axes = Axis::ALL.to_vec();
+    imported.shape = record.shape.to_vec();
+    imported.record = Some(place.into());
+    Ok(imported)
+}
+
+fn piece(place: &Path, record: &ExportRecord, file: &RecordedFile) -> Option<Piece> {
+    let RecordedFile { name, frames, samples, dims } = file;
+    let is_plain = Path::new(name).file_name().is_some_and(|plain| plain == name.as_str());
+    let range =
+        |[start, end]: [usize; 2], length: usize| (start < end && end <= length).then_some(start..end);
+    let [of_frames, .., of_samples, of_dims] = record.shape;
+    Some(Piece {
+        path: is_plain.then(|| place.with_file_name(name))?,
+        frames: range(*frames, of_frames)?,
+        samples: range(*samples, of_samples)?,
+        dims: range(*dims, of_dims)?,
     })
 }
 
-/// The numbers of a file, in the order of a part.
-fn numbers(path: &Path, part: &Part, record: &ExportRecord, extent: Extent) -> Result<Vec<f64>, Problem> {
-    let shape = part.shape(extent);
-    let expected: usize = shape.iter().product();
-    let [frames, .., spp, dims] = shape.map(Some);
-    // What files say themselves of their axes, so that they are known where they do not.
-    let options = match record.format {
-        Format::Raw => ImportOptions { dtype: Some(record.bits.dtype()), frames, ..Default::default() },
-        Format::Fast => {
-            let (dtype, channels) = (Some(record.bits.dtype()), Some(export::fast::CHANNELS));
-            ImportOptions { dtype, channels, dims, ..ImportOptions::default() }
-        }
-        Format::Pbrt => ImportOptions { frames, spp, dims, ..ImportOptions::default() },
-        _ => ImportOptions::default(),
+/// Reads one file; what it holds is a table of its own.
+fn one(piece: &Piece, record: &ExportRecord, extent: Extent) -> Result<Imported, TableError> {
+    let Extent { height, width, .. } = extent;
+    let (frames, spp, dims) = (piece.frames.len(), piece.samples.len(), piece.dims.len());
+    let [frames, height, width, spp, dims] = [frames, height, width, spp, dims].map(Some);
+    let dtype = matches!(record.format, Format::Fast | Format::Raw).then(|| record.bits.dtype());
+    let channels = (record.format == Format::Fast).then_some(fast::CHANNELS);
+    let levels = record.bits.levels().map(u64::from);
+    let options = ImportOptions {
+        frames,
+        height,
+        width,
+        spp,
+        dims,
+        channels,
+        dtype,
+        levels,
+        ..ImportOptions::default()
     };
-    // Frames, rows from the top, pixels from the left, samples, channels: the order of a part.
-    let Source { values: found, .. } = source(path, &options)?;
-    if found.len() != expected {
-        let (given, name) = (found.len(), path.display().to_string());
-        return Err(ImportError::OtherCount { name, given, expected }.into());
-    }
-    Ok(found)
+    super::import(&piece.path, &options).map_err(|problem| problem.of(&piece.path))
 }
 
-/// Puts the numbers of a file where they belong.
-fn put(values: &mut [f32], record: &ExportRecord, part: &Part, numbers: Vec<f64>) -> Result<(), String> {
-    let [_, height, width, spp, dims] = record.shape;
-    let extent = Extent { frames: record.shape[0], height, width, spp };
-    let mut numbers = numbers.into_iter();
-    for frame in part.frames.clone() {
-        for y in 0..height {
-            for (at, number) in part.row(extent, dims, frame, y).zip(numbers.by_ref()) {
-                let value = export::decoded(record.bits, number);
-                let value = value.filter(|value| (0.0..1.0).contains(value));
-                let value =
-                    value.ok_or_else(|| format!("{number} is no number of --bits {}", record.bits))?;
-                if !values[at].is_nan() {
-                    return Err("another file holds the same".into());
+fn several(
+    place: &Path,
+    pieces: &[Piece],
+    record: &ExportRecord,
+    extent: Extent,
+    refuse: impl Fn(&str) -> TableError,
+) -> Result<Imported, TableError> {
+    let dims = record.shape[4];
+    let count = extent.samples() * dims;
+    let mut values = Vec::new();
+    let no_memory = |error| TableError::Io { verb: "read", path: place.into(), source: error };
+    values.try_reserve_exact(count).map_err(|error| no_memory(error.into()))?;
+    values.resize(count, f32::NAN);
+    let mut last = None;
+    for piece in pieces {
+        let imported = one(piece, record, extent)?;
+        let mut read = imported.table.values().iter();
+        for frame in piece.frames.clone() {
+            for site in frame * extent.height * extent.width..(frame + 1) * extent.height * extent.width {
+                for sample in piece.samples.clone() {
+                    let at = (site * extent.spp + sample) * dims;
+                    let place = &mut values[at + piece.dims.start..at + piece.dims.end];
+                    place.iter_mut().zip(&mut read).for_each(|(place, value)| *place = *value);
                 }
-                values[at] = value;
             }
         }
+        last = Some(imported);
     }
-    Ok(())
+    // Numbers that were read are none, so that a part without a file is one that another has twice.
+    let Some(imported) = last.filter(|_| !values.iter().any(|value| value.is_nan())) else {
+        return Err(refuse("holds a part of the table twice, or not at all"));
+    };
+    Ok(Imported { table: SampleTable::trusted(extent, dims, values), ..imported })
 }

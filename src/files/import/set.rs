@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 
 use ndarray::{ArrayD, IxDyn, ShapeBuilder, concatenate};
 
-use super::ImportOptions;
-use super::source::{Problem, Source, source};
+use super::source::{self, Source};
+use super::{ImportOptions, Problem};
 use crate::error::ImportError;
 use crate::files::layout::{Axis, Layout};
 
@@ -112,7 +112,7 @@ pub(super) fn read(pattern: &Pattern, options: &ImportOptions) -> Result<Source,
                     sample,
                     dim,
                 })?;
-                let (array, source) = five_axes(source(path, options)?, options)?;
+                let (array, source) = five_axes(source::read(path, options)?, options)?;
                 let name = name_of(path);
                 match &first {
                     None => first = Some((source, name)),

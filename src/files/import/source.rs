@@ -1,4 +1,4 @@
-//! The numbers of somebody else's file, whatever its format.
+//! The numbers of a file and what it says of them, whichever kind of file it is.
 
 use std::fs::File;
 #[cfg(feature = "image")]
@@ -8,29 +8,24 @@ use std::path::Path;
 
 use ndarray::{ArrayD, IxDyn, ShapeBuilder};
 
-use super::ktx2;
-use super::{ImportOptions, raw, written};
+use super::{ImportOptions, Problem, ktx2, raw, written};
 use crate::error::{FormatError, ImportError};
 use crate::files::dtype::Dtype;
-use crate::files::header::{self, Fault};
-use crate::files::layout::{Axis, Layout};
-use crate::files::text::Unread;
+use crate::files::header::{self, Fault, Header};
+use crate::files::layout::{Axis, Layout, PICTURE};
 use crate::table::extent::Extent;
-
-/// Axes of a picture.
-pub(super) const PICTURE: [Axis; 3] = [Axis::Y, Axis::X, Axis::Dim];
 
 /// The numbers of a file, as they lie there.
 pub(super) struct Source {
     pub(super) values: Vec<f64>,
     pub(super) shape: Vec<usize>,
+    /// Axes that the file names itself; none otherwise.
+    pub(super) axes: Vec<Axis>,
     pub(super) fortran: bool,
     pub(super) dtype: Option<Dtype>,
-    pub(super) descr: String,
-    /// Levels, where the format says how many there are.
+    /// Levels that the file names itself.
     pub(super) levels: Option<u64>,
-    /// The axes, where the format says which they are.
-    pub(super) axes: Vec<Axis>,
+    pub(super) descr: String,
 }
 
 impl Source {
@@ -107,78 +102,25 @@ impl Source {
     }
 }
 
-pub(super) enum Problem {
-    Fault(Fault),
-    Import(ImportError),
-}
-
-impl<F: Into<Fault>> From<F> for Problem {
-    fn from(fault: F) -> Self {
-        Self::Fault(fault.into())
-    }
-}
-
-impl From<ImportError> for Problem {
-    fn from(problem: ImportError) -> Self {
-        Self::Import(problem)
-    }
-}
-
-impl From<Unread> for Problem {
-    fn from(unread: Unread) -> Self {
-        match unread {
-            Unread::Io(error) => error.into(),
-            Unread::Import(problem) => problem.into(),
-        }
-    }
-}
-
 /// Reads all numbers of a file.
-pub(super) fn source(path: &Path, options: &ImportOptions) -> Result<Source, Problem> {
+pub(super) fn read(path: &Path, options: &ImportOptions) -> Result<Source, Problem> {
     let (mut file, bytes) = header::open(path)?;
     let mut source = match (raw::by_options(path, options)?, picture(&mut file, bytes)?) {
         (Some(described), _) => raw::read(file, bytes, described)?,
         (None, Some(picture)) => picture,
-        (None, None) => numbers_of(path, file, bytes, options)?,
+        (None, None) => match header::read(&mut file, bytes) {
+            Err(Fault::Format(FormatError::NotNpy { .. })) => {
+                file.seek(SeekFrom::Start(0))?;
+                written::read(path, file, options)?
+            }
+            Err(fault) => return Err(fault.into()),
+            Ok(header) => read_npy(file, bytes, header)?,
+        },
     };
     if let Some(channels) = options.channels {
         source.drop_channels(channels, options)?;
     }
     Ok(source)
-}
-
-/// Reads an array, a list or a source text.
-fn numbers_of(path: &Path, mut file: File, bytes: u64, options: &ImportOptions) -> Result<Source, Problem> {
-    let header = match header::read(&mut file, bytes) {
-        Err(Fault::Format(FormatError::NotNpy { .. })) => {
-            file.seek(SeekFrom::Start(0))?;
-            return written::read(path, file, options);
-        }
-        Err(fault) => return Err(fault.into()),
-        Ok(header) => header,
-    };
-    let dtype = header.dtype.map_err(|dtype| ImportError::Dtype { dtype })?;
-    let shape = header.shape;
-    let count = shape.iter().try_fold(1_usize, |count, &length| count.checked_mul(length));
-    let expected = count.and_then(|count| count.checked_mul(dtype.size)).unwrap_or(usize::MAX) as u64;
-    let given = bytes - header.bytes;
-    if given != expected {
-        return Err(FormatError::Length { given, expected, shape }.into());
-    }
-    let values = numbers(file, count.unwrap_or(0), dtype)?;
-    Ok(Source { fortran: header.fortran, dtype: Some(dtype), ..Source::of(values, shape, header.descr) })
-}
-
-/// So many numbers of a type.
-pub(super) fn numbers(mut file: File, count: usize, dtype: Dtype) -> io::Result<Vec<f64>> {
-    let mut values = reserved(count)?;
-    let mut block = vec![0; 1 << 16];
-    while values.len() < count {
-        let bytes = block.len().min(dtype.size * (count - values.len()));
-        file.read_exact(&mut block[..bytes])?;
-        values.extend(block[..bytes].chunks_exact(dtype.size).map(|bytes| dtype.decode(bytes)));
-    }
-    Ok(values)
 }
 
 /// A texture, if the file begins like one.
@@ -211,4 +153,29 @@ pub(super) fn reserved<T>(count: usize) -> Result<Vec<T>, io::Error> {
     let mut list = Vec::new();
     list.try_reserve_exact(count).map_err(io::Error::from)?;
     Ok(list)
+}
+
+fn read_npy(file: File, bytes: u64, header: Header) -> Result<Source, Problem> {
+    let dtype = header.dtype.map_err(|dtype| ImportError::Dtype { dtype })?;
+    let shape = header.shape;
+    let count = shape.iter().try_fold(1_usize, |count, &length| count.checked_mul(length));
+    let expected = count.and_then(|count| count.checked_mul(dtype.size)).unwrap_or(usize::MAX) as u64;
+    let given = bytes - header.bytes;
+    if given != expected {
+        return Err(FormatError::Length { given, expected, shape }.into());
+    }
+    let values = numbers(file, count.unwrap_or(0), dtype)?;
+    Ok(Source { fortran: header.fortran, dtype: Some(dtype), ..Source::of(values, shape, header.descr) })
+}
+
+/// So many numbers of a type.
+pub(super) fn numbers(mut file: File, count: usize, dtype: Dtype) -> io::Result<Vec<f64>> {
+    let mut values = reserved(count)?;
+    let mut block = vec![0; 1 << 16];
+    while values.len() < count {
+        let bytes = block.len().min(dtype.size * (count - values.len()));
+        file.read_exact(&mut block[..bytes])?;
+        values.extend(block[..bytes].chunks_exact(dtype.size).map(|bytes| dtype.decode(bytes)));
+    }
+    Ok(values)
 }

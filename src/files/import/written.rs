@@ -4,8 +4,8 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
-use super::source::{Problem, Source};
-use super::{ImportOptions, raw};
+use super::source::Source;
+use super::{ImportOptions, Problem, raw};
 use crate::error::ImportError;
 use crate::files::c_source::{self, Array};
 use crate::files::export::source::PBRT_ARRAY;
