@@ -65,7 +65,7 @@ fn a_description_by_hand_is_read() {
     assert_eq!(imported.table.view()[[0, 2, 1, 0, 1]], (2000.0 * 21.0 + 0.5) / 65536.0);
     assert_eq!(
         imported.to_string(),
-        ">u2 of shape [2, 3, 4] as dim, y, x, 65536 levels as (v + 1/2) / 65536"
+        ">u2 of shape [1, 3, 4, 1, 2] as frame, y, x, sample, dim, 65536 levels as (v + 1/2) / 65536"
     );
     // In Fortran order, and without names.
     describe("dtype: >u2\nshape: 4 3 2\norder: Fortran\n");

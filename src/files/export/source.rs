@@ -164,9 +164,8 @@ pub(super) fn write_pbrt(out: &mut impl Write, path: &Path, values: &Encoded, pa
     write!(
         out,
         "// {title}\n//\n\
-         // The blue-noise textures of pbrt-v4, [texture][x][y] with texture = (frame * {spp} + sample) *
-         // {dims} \
-         + dim:\n\
+         // The blue-noise textures of pbrt-v4, [texture][x][y] with\n\
+         //     texture = (frame * {spp} + sample) * {dims} + dim:\n\
          // in the place of src/pbrt/util/bluenoise.cpp, with the lengths below in bluenoise.h.{square}\n\
          // Level k stands for (k + 0.5) / 65536; pbrt takes k / 65535 for it, which is half a level off at \
          most.\n\
