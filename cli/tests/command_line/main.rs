@@ -1,5 +1,6 @@
 //! `fsot` as a user meets it: files, words, exit codes.
 
+mod export;
 mod import;
 mod mistakes;
 mod outputs;
