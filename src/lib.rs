@@ -55,8 +55,9 @@
 //!
 //! # Features
 //!
-//! * `image` (default): densities from PNG and EXR files. Without it `targets::Picture` is absent, and the
-//!   crates `png`, `exr` and `moxcms`.
+//! * `image` (default): densities from PNG and EXR files, and tables to and from them. Without it
+//!   `targets::Picture` is absent, the formats `Atlas`, `Slices`, `Exr` and `ExrLayers` of [`files::Format`],
+//!   and the crates `png`, `exr` and `moxcms`.
 //!
 //! # What it promises
 //!

@@ -5,6 +5,7 @@
 //! | [`table`] | a sample table, and its metadata |
 //! | [`inspect`] | figures of a table |
 //! | [`report`] | a page about one table or several, or a sheet of their pictures |
+//! | [`export`] | textures and other files that engines read |
 //! | [`import`] | a sample table of somebody else's file |
 //! | [`points`] | point sets: labelled classes, progressive sequences, stipplings |
 //! | [`plot`] | curves of the logs of runs |
@@ -36,6 +37,7 @@ mod advice;
 pub mod checkpoint;
 pub mod console;
 pub mod draw;
+pub mod export;
 mod flags;
 pub mod import;
 pub mod inspect;
@@ -93,6 +95,7 @@ enum Verb {
     Table(table::Arguments),
     Inspect(inspect::Arguments),
     Report(report::Arguments),
+    Export(export::Arguments),
     Import(import::Arguments),
     Points(points::Arguments),
     Plot(plot::Arguments),
@@ -108,8 +111,10 @@ A tour:
       the same to look at, in report.html; several tables stand side by side
   fsot table --frames 1 --spp 4 --dims 4 --seconds 10 --out render.npy
       a still table for a renderer that takes 4 samples of 4 numbers per pixel
+  fsot export table.npy --to slices --out stbn.png
+      textures for an engine, one PNG a frame; or ktx2, exr and others
   fsot import mask.npy --out table.npy
-      a table of somebody else's array or text
+      a table of somebody else's array, texture or text
   fsot points two-class --counts 682,683,683 --every --points classes.csv
       three sets of points; each of them, and all their unions, are uniform
   fsot points stipple --picture face.png --count 20000 --out dots.png
@@ -132,6 +137,7 @@ pub fn main() -> ExitCode {
         Verb::Table(arguments) => table::run(&arguments),
         Verb::Inspect(arguments) => inspect::run(&arguments),
         Verb::Report(arguments) => report::run(&arguments),
+        Verb::Export(arguments) => export::run(&arguments),
         Verb::Import(arguments) => import::run(&arguments),
         Verb::Points(arguments) => points::run(&arguments),
         Verb::Plot(arguments) => plot::run(&arguments),

@@ -3,6 +3,7 @@
 
 mod checkpoint;
 mod config;
+mod export;
 mod files;
 mod import;
 mod kernel;
@@ -15,6 +16,7 @@ mod target;
 
 pub use self::checkpoint::CheckpointError;
 pub use self::config::{ClassError, ConfigError, TermError};
+pub use self::export::ExportError;
 pub use self::files::{FormatError, TableError};
 pub use self::import::ImportError;
 pub use self::kernel::KernelError;

@@ -57,6 +57,9 @@ impl FromStr for Axis {
 /// Longest last axis that is taken for the dimensions of a sample; a longer one is a row of pixels.
 const MOST_COLUMNS: usize = 16;
 
+/// The last axes of pictures.
+pub(super) const PICTURE: [Axis; 3] = [Axis::Y, Axis::X, Axis::Dim];
+
 /// Where the axes of an array go.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Layout {
@@ -67,11 +70,25 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// The layout of an array of this shape.
-    pub(super) fn of(shape: &[usize], options: &ImportOptions) -> Result<Self, ImportError> {
+    /// The layout of an array of this shape, whose axes are `known` if the file names them itself.
+    pub(super) fn of(shape: &[usize], known: &[Axis], options: &ImportOptions) -> Result<Self, ImportError> {
         let layout = match options.lengths() {
+            Some(lengths) if options.axes.is_empty() && known.ends_with(&PICTURE) => {
+                Self::list(shape, of_picture(shape, lengths))?
+            }
+            None if options.axes.is_empty() && !known.is_empty() => Self::named(shape, known)?,
             None if !options.axes.is_empty() => Self::named(shape, &options.axes)?,
             Some(_) if !options.axes.is_empty() => return Err(ImportError::AxesAndLengths),
+            // Five axes are those of a table, unless they have other lengths than are given.
+            Some(lengths)
+                if shape.len() == 5
+                    && lengths
+                        .iter()
+                        .zip(shape)
+                        .all(|(given, found)| given.is_none_or(|given| given == *found)) =>
+            {
+                Self::named(shape, &Axis::ALL)?
+            }
             Some(lengths) => Self::list(shape, lengths)?,
             None => match usual(shape)? {
                 axes if axes.is_empty() => Self::list(shape, [None; 5])?,
@@ -136,6 +153,20 @@ impl Layout {
     }
 }
 
+/// Lengths of a picture, whose columns and channels are known.
+fn of_picture(shape: &[usize], lengths: [Option<usize>; 5]) -> [Option<usize>; 5] {
+    let [frames, height, width, spp, dims] = lengths;
+    let &[.., columns, channels] = shape else { return lengths };
+    let rest = |known: Option<usize>| match known {
+        Some(known) if known > 0 && channels.is_multiple_of(known) => Some(channels / known),
+        _ => None,
+    };
+    // Channels are samples and dimensions: all that are not said to be the one are the other.
+    let dims = dims.or_else(|| rest(spp)).or(Some(channels));
+    let spp = spp.or_else(|| rest(dims).filter(|&spp| spp > 1));
+    [frames, height, width.or(Some(columns)), spp, dims]
+}
+
 /// The axes that an array of this shape usually has; none for a list of samples.
 ///
 /// Pictures are as wide as high, and the axis before or behind them is that of frames.
@@ -177,7 +208,7 @@ mod tests {
     use super::*;
 
     fn shape(shape: &[usize], options: &ImportOptions) -> Result<[usize; 5], ImportError> {
-        Layout::of(shape, options).map(
+        Layout::of(shape, &[], options).map(
             |Layout { extent: Extent { frames, height, width, spp }, dims, .. }| {
                 [frames, height, width, spp, dims]
             },
@@ -237,6 +268,8 @@ mod tests {
         assert_eq!(shape(&[4099], &options([0; 5])), no_square(4099, "height", 1));
         // Not a list, but as long as is given all the same.
         assert_eq!(shape(&[8, 8, 64], &options([0, 64, 64, 0, 0])), Ok([1, 64, 64, 1, 1]));
+        // A table, as far as is given.
+        assert_eq!(shape(&[3, 8, 9, 2, 1], &options([0, 0, 0, 2, 1])), Ok([3, 8, 9, 2, 1]));
     }
 
     #[test]

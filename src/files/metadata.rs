@@ -1,13 +1,12 @@
 //! What a table file does not say itself: how it was made and how good it is, in a `.json` beside it.
 
-use std::convert::Infallible;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::bytes::{hexadecimal, little_endian};
+use super::bytes::hexadecimal;
 use super::header::shortened;
 use crate::error::{FormatError, TableError};
 use crate::kernel::Tap;
@@ -16,7 +15,7 @@ use crate::table::extent::Extent;
 
 /// Kind and version of the file; the number grows when an old reader would misunderstand a new file.
 const FORMAT: &str = "fsot sample table 1";
-const AXES: [&str; 5] = ["frame", "y", "x", "sample", "dim"];
+pub(super) const AXES: [&str; 5] = ["frame", "y", "x", "sample", "dim"];
 const DTYPE: &str = "<f4";
 const ORDER: &str = "C";
 const RANGE: &str = "[0, 1)";
@@ -257,12 +256,40 @@ impl Metadata {
 
 /// The hash of values as they lie in a file.
 pub(super) fn sha256(values: &[f32]) -> String {
-    let mut hash = Sha256::new();
-    let Ok(()) = little_endian(values, |bytes| {
-        hash.update(bytes);
-        Ok::<_, Infallible>(())
-    });
-    hexadecimal(&hash.finalize())
+    let mut hash = Hash::default();
+    values.iter().for_each(|&value| hash.add(value));
+    hash.digits()
+}
+
+/// The hash of values that come one by one.
+pub(super) struct Hash {
+    hash: Sha256,
+    block: [u8; 1 << 12],
+    filled: usize,
+}
+
+impl Default for Hash {
+    fn default() -> Self {
+        Self { hash: Sha256::new(), block: [0; 1 << 12], filled: 0 }
+    }
+}
+
+impl Hash {
+    /// Adds the next value.
+    pub(super) fn add(&mut self, value: f32) {
+        self.block[self.filled..self.filled + size_of::<f32>()].copy_from_slice(&value.to_le_bytes());
+        self.filled += size_of::<f32>();
+        if self.filled == self.block.len() {
+            self.hash.update(self.block);
+            self.filled = 0;
+        }
+    }
+
+    /// In hexadecimal digits.
+    pub(super) fn digits(mut self) -> String {
+        self.hash.update(&self.block[..self.filled]);
+        hexadecimal(&self.hash.finalize())
+    }
 }
 
 /// Refuses paths beside which no metadata can lie: without a file name, or with the extension of metadata.

@@ -2,7 +2,9 @@
 //! whole or not at all.
 
 mod bytes;
+mod c_source;
 mod dtype;
+mod export;
 mod header;
 mod import;
 mod layout;
@@ -14,8 +16,10 @@ mod text;
 mod whole;
 
 pub(crate) use self::bytes::{hexadecimal, little_endian};
+pub use self::dtype::Dtype;
+pub use self::export::{Depth, ExportOptions, ExportRecord, Exported, Format, RecordedFile, Rounding};
 pub use self::import::{ImportOptions, Imported};
 pub use self::layout::Axis;
 pub use self::metadata::{BoundEstimate, BoundRecord, KernelTaps, Metadata, RunRecord};
 pub use self::whole::WholeFile;
-pub use crate::error::{FormatError, ImportError, TableError};
+pub use crate::error::{ExportError, FormatError, ImportError, TableError};

@@ -1,6 +1,7 @@
 //! `fsot` as a user meets it: files, words, exit codes.
 
 mod configurations;
+mod export;
 mod import;
 mod kernels;
 mod logs;
