@@ -38,6 +38,12 @@ struct Arguments {
     /// Uses of the table in a frame, as by so many bounces; errors are those of all their numbers together.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=8))]
     uses: u32,
+    /// Dimensions that are looked at together, as in 0,1 [default: all, of all uses].
+    #[arg(long, value_delimiter = ',')]
+    dims: Option<Vec<usize>>,
+    /// Only ways that begin like this, as in "as it is".
+    #[arg(long, default_value = "")]
+    way: String,
     /// Test integrands per family.
     #[arg(long, default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=4096))]
     integrands: u32,
@@ -65,7 +71,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let uses = arguments.uses as usize;
     let Extent { height, width, spp, .. } = table.extent();
     let extent = Extent { frames: arguments.frames as usize, height, width, spp };
-    let dims = uses * table.dims();
+    let all = || (0..uses * table.dims()).collect();
+    let dims = arguments.dims.clone().unwrap_or_else(all);
     let measure = Measure::new(dims, arguments)?;
     let source = Source { table: &table, still: &still };
 
@@ -75,7 +82,12 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         table.dims()
     );
     println!("{:48} {:>9} {:>9} {:>9} {:>9}", "read", "one frame", "one pixel", "filtered", "all");
-    for way in Way::all(&source, uses) {
+    let ways = Way::all(&source, extent.frames, uses).into_iter();
+    let ways: Vec<Way> = ways.filter(|way| way.name.starts_with(&arguments.way)).collect();
+    if ways.is_empty() {
+        return Err(format!("no way begins with {:?}: leave out --way to see all", arguments.way).into());
+    }
+    for way in ways {
         let read = way.read(&source, extent, uses)?;
         let [frame, pixel, both, all] = measure.errors(&read)?;
         println!("{:48} {frame:9.3} {pixel:9.3} {both:9.3} {all:9.3}", way.name);
@@ -100,14 +112,14 @@ struct Measure {
 }
 
 impl Measure {
-    fn new(dims: usize, arguments: &Arguments) -> Result<Self, Failure> {
+    fn new(dims: Vec<usize>, arguments: &Arguments) -> Result<Self, Failure> {
         let eye = SpatialKernel::Gaussian { sigma_px: 2.1 };
         let pixel = SpatialKernel::Box { size_px: 1 };
         let history = &arguments.temporal;
         let mean = TemporalKernel::Box { frames: arguments.frames as usize };
         Ok(Self {
-            dims: (0..dims).collect(),
-            integrands: Integrands::random(dims, arguments.integrands as usize, 0)?,
+            integrands: Integrands::random(dims.len(), arguments.integrands as usize, 0)?,
+            dims,
             kernels: [(pixel, history.clone()), (eye.clone(), history.clone()), (eye, mean)]
                 .map(|(space, time)| Kernel::product(space, time)),
         })

@@ -59,16 +59,20 @@ impl Way {
         Self { name: name.into(), number: Box::new(number) }
     }
 
-    /// All ways that there are for these tables.
-    pub fn all(source: &Source, uses: usize) -> Vec<Self> {
-        let frames = source.table.extent().frames;
+    /// All ways that there are for these tables and so many frames.
+    pub fn all(source: &Source, frames: usize, uses: usize) -> Vec<Self> {
         let mut ways = vec![Self::new("as it is", as_it_is)];
         if frames > 1 {
-            ways.extend([1, 5].map(|speed| Self::moving("as it is", speed, as_it_is)));
+            if source.table.extent().frames > 1 {
+                ways.extend(Self::moving("as it is", as_it_is));
+            }
+            ways.push(Self::new("a still table, elsewhere in every frame", elsewhere));
+            ways.extend(Self::moving("a still table, elsewhere", elsewhere));
         }
-        ways.push(Self::new("a still table, elsewhere in every frame", elsewhere));
-        ways.extend([1, 5].map(|speed| Self::moving("a still table, elsewhere", speed, elsewhere)));
-        ways.extend(others(source.table.dims()));
+        ways.extend(without_table(source.table.dims(), frames));
+        if frames > 1 {
+            ways.extend(mistakes_in_time());
+        }
         ways.extend(mistakes());
         if uses > 1 {
             ways.extend(mistakes_of_uses());
@@ -76,10 +80,12 @@ impl Way {
         ways
     }
 
-    /// The same while the picture moves by so many pixels a frame, and the history with it.
-    fn moving(name: &str, speed: usize, number: fn(&Source, Place) -> f32) -> Self {
-        Self::new(format!("{name}; {speed} px of motion a frame"), move |source, place| {
-            number(source, place.moved(0, speed * place.site.frame))
+    /// The same while the picture moves by a pixel, or five, a frame, and the history with it.
+    fn moving(name: &str, number: fn(&Source, Place) -> f32) -> [Self; 2] {
+        [1, 5].map(|speed| {
+            Self::new(format!("{name}; {speed} px of motion a frame"), move |source, place| {
+                number(source, place.moved(0, speed * place.site.frame))
+            })
         })
     }
 
@@ -113,27 +119,33 @@ fn elsewhere(source: &Source, place: Place) -> f32 {
 }
 
 /// What needs no table.
-fn others(dims: usize) -> Vec<Way> {
-    let mut ways = vec![
-        Way::new("no table: white noise", |_, place| {
-            let dim = 64 * place.number + place.dim;
-            WhiteNoise::new(2).sample(place.site, place.sample as u32, dim as u32)
-        }),
-        Way::new("no table: random per pixel, R2 over frames", |_, place| {
+fn without_table(dims: usize, frames: usize) -> Vec<Way> {
+    let white = |_: &Source, place: Place| {
+        let dim = 64 * place.number + place.dim;
+        WhiteNoise::new(2).sample(place.site, place.sample as u32, dim as u32)
+    };
+    let mut ways = vec![Way::new("no table: white noise", white)];
+    if frames > 1 {
+        ways.push(Way::new("no table: random per pixel, R2 over frames", |_, place| {
             (place.random() + golden(place.site.frame, place.dim)).fract()
-        }),
-    ];
+        }));
+    }
     if dims == 1 {
-        ways.push(Way::new("no table: interleaved gradient noise", |_, place| gradient_noise(place)));
+        let noise = |_: &Source, place: Place| gradient_noise(place);
+        ways.push(Way::new("no table: interleaved gradient noise", noise));
+        if frames > 1 {
+            ways.extend(Way::moving("interleaved gradient noise", noise));
+        }
     }
     ways
 }
 
-fn mistakes() -> Vec<Way> {
+fn mistakes_in_time() -> Vec<Way> {
     vec![
         Way::new("the first frame again and again", |source, place| as_it_is(source, place.at_frame(0))),
         Way::new("a still table, values shifted per frame", |source, place| {
-            let number = tiled(source.still, place.at_frame(0));
+            let by = source.still.extent().displacement(place.number as u64);
+            let number = tiled(source.still, place.at_frame(0).moved(by.y, by.x));
             (number + golden(place.site.frame, place.dim)).fract()
         }),
         Way::new("frames in random order", |source, place| {
@@ -141,6 +153,11 @@ fn mistakes() -> Vec<Way> {
             let random = WhiteNoise::new(3).sample(at, 0, 0);
             as_it_is(source, place.at_frame((random * source.table.extent().frames as f32) as usize))
         }),
+    ]
+}
+
+fn mistakes() -> Vec<Way> {
+    vec![
         Way::new("values shifted per pixel", |source, place| {
             (as_it_is(source, place) + place.random()).fract()
         }),
@@ -220,8 +237,8 @@ mod tests {
         assert_eq!(as_it_is(&source, place), number(1, 1 + by.y, 2 + by.x));
         let by = extent.displacement(1005);
         assert_eq!(elsewhere(&source, place), number(0, 1 + by.y, 2 + by.x));
-        let moving = Way::moving("", 3, as_it_is);
-        assert_eq!((moving.number)(&source, Place { number: 0, ..place }), number(1, 1, 2 + 15));
+        let [_, moving] = Way::moving("", as_it_is);
+        assert_eq!((moving.number)(&source, Place { number: 0, ..place }), number(1, 1, 2 + 25));
         assert_eq!(eight_bits(0.999_999), 255.5 / 256.0);
     }
 
@@ -230,7 +247,7 @@ mod tests {
         let table = SampleTable::white_noise(Extent::animation(3, 8, 8).with_spp(2), 1, 0).unwrap();
         let still = SampleTable::white_noise(Extent::still(8, 8).with_spp(2), 1, 0).unwrap();
         let source = Source { table: &table, still: &still };
-        for way in Way::all(&source, 2) {
+        for way in Way::all(&source, 7, 2) {
             let read = way.read(&source, Extent { frames: 7, ..table.extent() }, 2).unwrap();
             assert_eq!(read.shape(), [7, 8, 8, 2, 2], "{}", way.name);
         }
