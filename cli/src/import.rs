@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use fsot::files::{Axis, ImportOptions, Imported, Metadata};
+use fsot::files::{Axis, Dtype, ImportOptions, Imported, Metadata};
 use fsot::{Extent, SampleTable};
 use serde_json::json;
 
@@ -20,20 +20,27 @@ Examples:
       with axes in another order than is usual
   fsot import ten_bits.npy --levels 1024 --out table.npy
       whole numbers from 0 to 1023, each as (v + 1/2) / 1024
+  fsot import mask.png --out table.npy
+      a texture: PNG, KTX 2 or EXR; of channels those that say something, of a picture that is several times
+      as high as wide the frames
+  fsot import 'stbn_vec2_2Dx1D_128x128x64_{frame}.png' --out table.npy
+      a file for each frame; {sample} and {dims} stand for what else tells files apart
   fsot import samples.dat --frames 10 --out table.npy
       one sample a line, in the order [frame, y, x, sample, dim]
 
+What fsot export wrote is read by the .json beside it, unless lengths, axes or levels are given.
 Fractions are taken as they are; 1 becomes the largest number below. Whole numbers are ranks if each from 0 or
 1 to the greatest is there equally often; else 8, 16 and 32 bits without sign have 256, 65536 and 2^32 levels
 if a value is in their upper half; else --levels says how many there are.
 Lengths are for lists of samples: one of them may be missing, or width and height of a square picture.
 Exit codes: 0 done, 1 refused or failed, 2 bad command line.";
 
-/// Makes a sample table of an array or a text of somebody else's.
+/// Makes a sample table of an array, a texture or a text of somebody else's.
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
-    /// A .npy file, or text with numbers between blanks or commas.
+    /// A .npy file, a PNG, KTX 2 or EXR texture, text with numbers between blanks or commas, or what was
+    /// given to fsot export as --out.
     path: PathBuf,
     /// Where to write the table, as .npy.
     #[arg(long, value_name = "NPY")]
@@ -60,6 +67,15 @@ pub struct Arguments {
     /// Dimensions of a sample of a list [default: numbers on a line, up to 16].
     #[arg(long, value_parser = crate::flags::count())]
     dims: Option<usize>,
+    /// Numbers that a sample takes in a list, of which the first --dims are read, such as 4 of RGBA.
+    #[arg(long, value_parser = crate::flags::count())]
+    channels: Option<usize>,
+    /// Type of the numbers of a file without a header, as numpy calls it: <f4, <u2, |u1 and so on.
+    #[arg(long)]
+    dtype: Option<Dtype>,
+    /// Which array of a C or C++ source text.
+    #[arg(long, value_name = "NAME")]
+    array: Option<String>,
     #[command(flatten)]
     shared: Shared,
 }
@@ -69,13 +85,15 @@ pub struct Arguments {
 /// # Errors
 /// Whatever stands against it, in one sentence.
 pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
-    let Arguments { path, out, levels, frames, height, width, spp, dims, shared, .. } = arguments;
+    let Arguments { path, out, levels, frames, height, width, spp, dims, channels, shared, .. } = arguments;
     output::check(&[Output { flag: "--out", path: out, endings: &["npy"] }], &[path])?;
     let (axes, levels) = (arguments.axes.clone(), *levels);
     let [frames, height, width, spp, dims] = [*frames, *height, *width, *spp, *dims];
-    let options = ImportOptions { axes, levels, frames, height, width, spp, dims };
+    let (channels, dtype, array) = (*channels, arguments.dtype, arguments.array.clone());
+    let options = ImportOptions { axes, levels, frames, height, width, spp, dims, channels, dtype, array };
     let imported = SampleTable::import(path, &options)?;
-    let Imported { table, dtype, shape: of_file, axes, levels, first_level, ones, .. } = &imported;
+    let Imported { table, dtype, shape: of_file, axes, levels, first_level, ones, left_out, record, .. } =
+        &imported;
     table.save(out)?;
 
     let mut console = Console::new(shared);
@@ -98,6 +116,8 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
         "levels": levels,
         "first_level": first_level,
         "ones": ones,
+        "channels_left_out": left_out,
+        "record": record.as_ref().map(|record| record.display().to_string()),
     }));
     console.end(Ended::Done)
 }

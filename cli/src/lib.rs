@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`table`] | a sample table, and its metadata |
 //! | [`inspect`] | figures and a page of pictures of a table |
+//! | [`export`] | textures and other files that engines read |
 //! | [`import`] | a sample table of somebody else's file |
 //! | [`points`] | point sets: labelled classes, progressive sequences, stipplings |
 //!
@@ -33,6 +34,7 @@ use clap::{Parser, Subcommand};
 mod advice;
 pub mod console;
 pub mod draw;
+pub mod export;
 mod flags;
 pub mod import;
 pub mod inspect;
@@ -86,6 +88,7 @@ struct Command {
 enum Verb {
     Table(table::Arguments),
     Inspect(inspect::Arguments),
+    Export(export::Arguments),
     Import(import::Arguments),
     Points(points::Arguments),
 }
@@ -98,8 +101,10 @@ A tour:
       what the table is worth: figures, and table.inspect.png to look at
   fsot table --frames 1 --spp 4 --dims 4 --seconds 10 --out render.npy
       a still table for a renderer that takes 4 samples of 4 numbers per pixel
+  fsot export table.npy --to slices --out stbn.png
+      textures for an engine, one PNG a frame; or ktx2, exr and others
   fsot import mask.npy --out table.npy
-      a table of somebody else's array or text
+      a table of somebody else's array, texture or text
   fsot points two-class --counts 682,683,683 --every --points classes.csv
       three sets of points; each of them, and all their unions, are uniform
   fsot points stipple --picture face.png --count 20000 --out dots.png
@@ -119,6 +124,7 @@ pub fn main() -> ExitCode {
     let ended = match Command::parse().verb {
         Verb::Table(arguments) => table::run(&arguments),
         Verb::Inspect(arguments) => inspect::run(&arguments),
+        Verb::Export(arguments) => export::run(&arguments),
         Verb::Import(arguments) => import::run(&arguments),
         Verb::Points(arguments) => points::run(&arguments),
     };

@@ -2,6 +2,7 @@
 //! it.
 
 mod config;
+mod export;
 mod files;
 mod import;
 mod kernel;
@@ -13,6 +14,7 @@ mod short;
 mod target;
 
 pub use self::config::{ClassError, ConfigError, TermError};
+pub use self::export::ExportError;
 pub use self::files::{FormatError, TableError};
 pub use self::import::ImportError;
 pub use self::kernel::KernelError;

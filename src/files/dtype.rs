@@ -1,5 +1,8 @@
 //! Types of numbers in a `.npy` file, by the names that numpy gives them.
 
+use std::fmt;
+use std::str::FromStr;
+
 use half::f16;
 
 /// What a number is made of.
@@ -11,9 +14,17 @@ pub(super) enum Kind {
     Float,
 }
 
-/// A type of numbers that is read: kind, bytes and byte order.
+/// A type of numbers that is read, of 8 to 64 bits, by the name that numpy gives it: `<f4`, `>u2`, `u1`.
+///
+/// ```
+/// use fsot::files::Dtype;
+///
+/// let little: Dtype = "<u2".parse()?;
+/// assert_eq!(little.to_string(), "<u2");
+/// # Ok::<(), String>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Dtype {
+pub struct Dtype {
     pub(super) kind: Kind,
     /// Bytes of a number: 1, 2, 4 or 8.
     pub(super) size: usize,
@@ -23,6 +34,10 @@ pub(super) struct Dtype {
 impl Dtype {
     /// Little-endian `f32`, which is what tables are.
     pub(super) const TABLE: Self = Self { kind: Kind::Float, size: 4, big_endian: false };
+    /// The others that an export writes.
+    pub(super) const HALF: Self = Self { kind: Kind::Float, size: 2, big_endian: false };
+    pub(super) const U8: Self = Self { kind: Kind::Unsigned, size: 1, big_endian: false };
+    pub(super) const U16: Self = Self { kind: Kind::Unsigned, size: 2, big_endian: false };
 
     /// The type of this name; `None` if there is none, or if it is no plain number of at most 64 bits.
     pub(super) fn named(name: &str) -> Option<Self> {
@@ -86,6 +101,30 @@ impl Dtype {
             (Kind::Float, 4) => f64::from(f32::from_bits(bits as u32)),
             (Kind::Float, _) => f64::from_bits(bits),
         }
+    }
+}
+
+impl fmt::Display for Dtype {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        let order = if self.size == 1 {
+            '|'
+        } else if self.big_endian {
+            '>'
+        } else {
+            '<'
+        };
+        let kind = ['b', 'u', 'i', 'f'][self.kind as usize];
+        write!(out, "{order}{kind}{}", self.size)
+    }
+}
+
+impl FromStr for Dtype {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        Self::named(text).ok_or_else(|| {
+            format!("'{text}' is no type of numbers: write <f4, <f2, <u2, u1 or another as numpy names them")
+        })
     }
 }
 

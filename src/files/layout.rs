@@ -57,6 +57,9 @@ impl FromStr for Axis {
 /// Longest last axis that is taken for the dimensions of a sample; a longer one is a row of pixels.
 const MOST_COLUMNS: usize = 16;
 
+/// The last axes of pictures.
+pub(super) const PICTURE: [Axis; 3] = [Axis::Y, Axis::X, Axis::Dim];
+
 /// Where the axes of an array go.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Layout {
@@ -67,9 +70,13 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// The layout of an array of this shape.
-    pub(super) fn of(shape: &[usize], options: &ImportOptions) -> Result<Self, ImportError> {
+    /// The layout of an array of this shape, whose axes are `known` if the file names them itself.
+    pub(super) fn of(shape: &[usize], known: &[Axis], options: &ImportOptions) -> Result<Self, ImportError> {
         let layout = match options.lengths() {
+            Some(lengths) if options.axes.is_empty() && known.ends_with(&PICTURE) => {
+                Self::list(shape, of_picture(shape, lengths))?
+            }
+            _ if options.axes.is_empty() && !known.is_empty() => Self::known(shape, known, options)?,
             None if !options.axes.is_empty() => Self::named(shape, &options.axes)?,
             Some(_) if !options.axes.is_empty() => return Err(ImportError::AxesAndLengths),
             Some(lengths) => Self::list(shape, lengths)?,
@@ -81,6 +88,20 @@ impl Layout {
         let Extent { frames, height, width, spp } = layout.extent;
         let shape = [frames, height, width, spp, layout.dims];
         layout.extent.validate(layout.dims).map_err(|problem| ImportError::Extent { shape, problem })?;
+        Ok(layout)
+    }
+
+    /// Axes that a file names must have the lengths that are given.
+    fn known(shape: &[usize], axes: &[Axis], options: &ImportOptions) -> Result<Self, ImportError> {
+        let layout = Self::named(shape, axes)?;
+        let Extent { frames, height, width, spp } = layout.extent;
+        let given = options.lengths().unwrap_or_default();
+        for (given, found) in given.into_iter().zip([frames, height, width, spp, layout.dims]) {
+            if given.is_some_and(|given| given != found) {
+                let given = given.unwrap_or(0);
+                return Err(ImportError::Lengths { values: shape.iter().product(), given });
+            }
+        }
         Ok(layout)
     }
 
@@ -136,6 +157,20 @@ impl Layout {
     }
 }
 
+/// Lengths of a picture, whose columns and channels are known.
+fn of_picture(shape: &[usize], lengths: [Option<usize>; 5]) -> [Option<usize>; 5] {
+    let [frames, height, width, spp, dims] = lengths;
+    let &[.., columns, channels] = shape else { return lengths };
+    let rest = |known: Option<usize>| match known {
+        Some(known) if known > 0 && channels.is_multiple_of(known) => Some(channels / known),
+        _ => None,
+    };
+    // Channels are samples and dimensions: all that are not said to be the one are the other.
+    let dims = dims.or_else(|| rest(spp)).or(Some(channels));
+    let spp = spp.or_else(|| rest(dims).filter(|&spp| spp > 1));
+    [frames, height, width.or(Some(columns)), spp, dims]
+}
+
 /// The axes that an array of this shape usually has; none for a list of samples.
 ///
 /// Pictures are as wide as high, and the axis before or behind them is that of frames.
@@ -177,7 +212,7 @@ mod tests {
     use super::*;
 
     fn shape(shape: &[usize], options: &ImportOptions) -> Result<[usize; 5], ImportError> {
-        Layout::of(shape, options).map(
+        Layout::of(shape, &[], options).map(
             |Layout { extent: Extent { frames, height, width, spp }, dims, .. }| {
                 [frames, height, width, spp, dims]
             },

@@ -14,7 +14,7 @@ use crate::table::extent::Extent;
 
 /// Kind and version of the file; the number grows when an old reader would misunderstand a new file.
 const FORMAT: &str = "fsot sample table 1";
-const AXES: [&str; 5] = ["frame", "y", "x", "sample", "dim"];
+pub(super) const AXES: [&str; 5] = ["frame", "y", "x", "sample", "dim"];
 const DTYPE: &str = "<f4";
 const ORDER: &str = "C";
 const RANGE: &str = "[0, 1)";
@@ -248,19 +248,40 @@ impl Metadata {
 
 /// The hash of values as they lie in a file.
 pub(super) fn sha256(values: &[f32]) -> String {
-    let mut hash = Sha256::new();
-    let mut block = [0; 1 << 12];
-    for values in values.chunks(block.len() / size_of::<f32>()) {
-        let bytes = &mut block[..size_of_val(values)];
-        bytes
-            .as_chunks_mut()
-            .0
-            .iter_mut()
-            .zip(values)
-            .for_each(|(bytes, value)| *bytes = value.to_le_bytes());
-        hash.update(bytes);
+    let mut hash = Hash::default();
+    values.iter().for_each(|&value| hash.add(value));
+    hash.digits()
+}
+
+/// The hash of values that come one by one.
+pub(super) struct Hash {
+    hash: Sha256,
+    block: [u8; 1 << 12],
+    filled: usize,
+}
+
+impl Default for Hash {
+    fn default() -> Self {
+        Self { hash: Sha256::new(), block: [0; 1 << 12], filled: 0 }
     }
-    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+impl Hash {
+    /// Adds the next value.
+    pub(super) fn add(&mut self, value: f32) {
+        self.block[self.filled..self.filled + size_of::<f32>()].copy_from_slice(&value.to_le_bytes());
+        self.filled += size_of::<f32>();
+        if self.filled == self.block.len() {
+            self.hash.update(self.block);
+            self.filled = 0;
+        }
+    }
+
+    /// In hexadecimal digits.
+    pub(super) fn digits(mut self) -> String {
+        self.hash.update(&self.block[..self.filled]);
+        self.hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    }
 }
 
 /// Refuses paths beside which no metadata can lie: without a file name, or with the extension of metadata.

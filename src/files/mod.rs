@@ -1,7 +1,9 @@
 //! What lies on the disk: tables, their metadata, other people's files, and a writer whose files appear
 //! whole or not at all.
 
+mod c_source;
 mod dtype;
+mod export;
 mod header;
 mod import;
 mod layout;
@@ -12,8 +14,10 @@ pub(crate) mod npy;
 mod text;
 mod whole;
 
+pub use self::dtype::Dtype;
+pub use self::export::{Depth, ExportOptions, ExportRecord, Exported, Format, RecordedFile, Rounding};
 pub use self::import::{ImportOptions, Imported};
 pub use self::layout::Axis;
 pub use self::metadata::{BoundEstimate, BoundRecord, KernelTaps, Metadata, RunRecord};
 pub use self::whole::WholeFile;
-pub use crate::error::{FormatError, ImportError, TableError};
+pub use crate::error::{ExportError, FormatError, ImportError, TableError};

@@ -21,6 +21,12 @@ impl From<io::Error> for Unread {
     }
 }
 
+impl From<ImportError> for Unread {
+    fn from(problem: ImportError) -> Self {
+        Self::Import(problem)
+    }
+}
+
 /// The numbers of a text file, and how many stand on a line.
 pub(super) struct Numbers {
     pub(super) values: Vec<f64>,
@@ -76,6 +82,20 @@ pub(super) fn read(mut file: File) -> Result<Numbers, Unread> {
     Ok(Numbers { values: reader.values, columns })
 }
 
+/// The number that a word is in base 10, such that rounding it to `f32` gives the nearest to the word.
+///
+/// Rounded twice, a word that lies just beside the middle of two `f32` would go to the wrong one.
+pub(super) fn nearest(word: &str) -> Option<f64> {
+    let number: f64 = word.parse().ok()?;
+    /// What an `f64` has behind the digits of an `f32`.
+    const REST: u64 = (1 << 29) - 1;
+    let is_middle = number.to_bits() & REST == 1 << 28 || number.abs() < f64::from(f32::MIN_POSITIVE);
+    if is_middle && number != 0.0 {
+        return word.parse().ok().map(|number: f32| number.into());
+    }
+    Some(number)
+}
+
 impl Reader {
     fn take(&mut self, byte: u8) -> Result<(), ImportError> {
         match byte {
@@ -99,7 +119,7 @@ impl Reader {
         if self.word.is_empty() {
             return Ok(());
         }
-        let number = std::str::from_utf8(&self.word).ok().and_then(|word| word.parse().ok());
+        let number = str::from_utf8(&self.word).ok().and_then(nearest);
         match number {
             Some(number) => {
                 self.values.push(number);
@@ -132,5 +152,27 @@ impl Reader {
     fn no_number(&self) -> ImportError {
         let text = shortened(String::from_utf8_lossy(&self.word).into_owned());
         ImportError::Number { line: self.line + 1, text }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_rounded_once() {
+        // 2⁻²⁵ above 1/2 is the middle of two f32; a trace more belongs to the upper one.
+        let middle = "0.5000000298023223876953125";
+        for (word, expected) in [
+            (middle.to_string(), 0.5_f32),
+            (format!("{middle}000001"), 0.5_f32.next_up()),
+            ("1e-45".into(), f32::from_bits(1)),
+            ("0.1".into(), 0.1),
+            ("16777217".into(), 16777216.0),
+        ] {
+            assert_eq!(nearest(&word).map(|number| number as f32), Some(expected), "{word}");
+        }
+        // Whole numbers keep digits that no f32 has.
+        assert_eq!(nearest("16777219"), Some(16777219.0));
     }
 }

@@ -99,6 +99,54 @@ impl WholeFile {
     }
 }
 
+/// Finds out whether a file could be written, as far as that is known without writing.
+pub(crate) fn check(path: &Path) -> io::Result<()> {
+    let target = target(path)?;
+    tempfile::tempfile_in(directory(&target)).map(drop).map_err(|error| {
+        let reason = format!("cannot make a file in {}: {}", directory(&target).display(), plain(&error));
+        io::Error::new(error.kind(), reason)
+    })
+}
+
+/// Gives all files their names, in this order, or none: what the first of them have replaced is put back if
+/// a later one cannot take its name.
+pub(crate) fn commit_all(files: Vec<WholeFile>) -> Result<(), (PathBuf, io::Error)> {
+    let mut kept: Vec<(PathBuf, Option<TempPath>)> = Vec::with_capacity(files.len());
+    // Before the first takes its name, because this may fail for want of room.
+    for file in &files {
+        let previous = second_name(&file.target).map_err(|error| (file.target.clone(), error))?;
+        kept.push((file.target.clone(), previous));
+    }
+    for (done, file) in files.into_iter().enumerate() {
+        let target = file.target.clone();
+        if let Err(error) = file.commit() {
+            // The caller is already told why: as far as possible.
+            for (target, previous) in kept.drain(..done) {
+                _ = match previous {
+                    Some(previous) => previous.persist(&target).map_err(|failed| failed.error),
+                    None => fs::remove_file(&target),
+                };
+            }
+            return Err((target, error));
+        }
+    }
+    Ok(())
+}
+
+/// Another name beside it of a file that is going to be replaced, if it is there.
+fn second_name(path: &Path) -> io::Result<Option<TempPath>> {
+    if !path.exists() {
+        return Ok(None);
+    }
+    // A name that nobody has; a link cannot take one that somebody has.
+    let name = tempfile::Builder::new().prefix(".fsot-").suffix(".tmp").tempfile_in(directory(path))?;
+    let name = name.into_temp_path();
+    fs::remove_file(&name)?;
+    // Not every file system has links.
+    fs::hard_link(path, &name).or_else(|_| fs::copy(path, &name).map(drop))?;
+    Ok(Some(name))
+}
+
 impl Replaced {
     /// Puts back what was there, as far as possible: the caller is already reporting why.
     pub(crate) fn undo(self) {

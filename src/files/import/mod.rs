@@ -1,17 +1,30 @@
-//! Tables out of other people's files: arrays of any plain type, order and number of axes, and text.
+//! Tables out of other people's files: arrays of any plain type, order and number of axes, bare numbers,
+//! text, C and C++; and out of what an export has written.
+
+#[cfg(feature = "image")]
+mod exr;
+mod ktx2;
+#[cfg(feature = "image")]
+mod png;
+mod raw;
+mod recorded;
+mod set;
+mod source;
 
 use std::fmt;
-use std::io::{self, Read, Seek, SeekFrom};
-use std::path::Path;
+use std::io;
+use std::path::{Path, PathBuf};
 
 use ndarray::{ArrayD, IxDyn, ShapeBuilder};
 
+use self::set::Pattern;
+use self::source::Source;
 use super::dtype::Dtype;
-use super::header::{self, Fault, GIVE_NPY};
+use super::header::{Fault, GIVE_NPY};
 use super::layout::{Axis, Layout};
 use super::levels::Scale;
-use super::text::{self, Unread};
-use crate::error::{FormatError, ImportError, TableError};
+use super::text::Unread;
+use crate::error::{ImportError, TableError};
 use crate::table::SampleTable;
 
 /// Larger files are not read for the sake of a message.
@@ -61,6 +74,15 @@ pub struct ImportOptions {
     /// Dimensions of a sample of a list; the length of the last axis or of a line of text, up to 16, if it is
     /// not given.
     pub dims: Option<usize>,
+    /// Numbers that a sample takes in a list, of which the first `dims` are read, such as 4 in a texture of
+    /// RGBA; only what is read if it is not given.
+    pub channels: Option<usize>,
+    /// The type of the numbers of a file that has no header. If it is not given, a text beside the file says
+    /// it, whose name is the file's and `.txt`: lines `dtype: <f4`, `shape: 1, 64, 64, 1, 2`, `axes: frame,
+    /// y, x, sample, dim` and, of levels, `levels: 65536`; those of axes and of levels may be missing.
+    pub dtype: Option<Dtype>,
+    /// The name of the array, where a C or C++ source text has several.
+    pub array: Option<String>,
 }
 
 /// A table, and what was taken for what.
@@ -83,20 +105,24 @@ pub struct Imported {
     pub first_level: u64,
     /// Values of 1 that became the largest number below.
     pub ones: usize,
-}
-
-/// The numbers of a file, as they lie there.
-struct Source {
-    values: Vec<f64>,
-    shape: Vec<usize>,
-    fortran: bool,
-    dtype: Option<Dtype>,
-    descr: String,
+    /// Channels of a texture that were left out, because they are constant or like another.
+    pub left_out: Vec<usize>,
+    /// The record of the export that said how to read the file.
+    pub record: Option<PathBuf>,
 }
 
 enum Problem {
     Fault(Fault),
     Import(ImportError),
+}
+
+impl Problem {
+    fn of(self, path: &Path) -> TableError {
+        match self {
+            Self::Fault(fault) => fault.of(path),
+            Self::Import(problem) => TableError::Import { path: path.into(), problem },
+        }
+    }
 }
 
 impl<F: Into<Fault>> From<F> for Problem {
@@ -108,6 +134,15 @@ impl<F: Into<Fault>> From<F> for Problem {
 impl From<ImportError> for Problem {
     fn from(problem: ImportError) -> Self {
         Self::Import(problem)
+    }
+}
+
+impl From<Unread> for Problem {
+    fn from(unread: Unread) -> Self {
+        match unread {
+            Unread::Io(error) => error.into(),
+            Unread::Import(problem) => problem.into(),
+        }
     }
 }
 
@@ -138,20 +173,33 @@ impl SampleTable {
     /// ```
     pub fn import(path: impl AsRef<Path>, options: &ImportOptions) -> Result<Imported, TableError> {
         let path = path.as_ref();
-        import(path, options).map_err(|problem| match problem {
-            Problem::Fault(fault) => fault.of(path),
-            Problem::Import(problem) => TableError::Import { path: path.into(), problem },
-        })
+        match recorded::import(path, options) {
+            Some(imported) => imported,
+            None => import(path, options).map_err(|problem| problem.of(path)),
+        }
     }
 }
 
 fn import(path: &Path, options: &ImportOptions) -> Result<Imported, Problem> {
-    let Source { values, shape, fortran, dtype, descr } = source(path, options)?;
-    let layout = Layout::of(&shape, options)?;
-    let scale = Scale::of(&values, dtype, options.levels)?;
+    match Pattern::of(path) {
+        Some(pattern) => {
+            let source = set::read(&pattern, options)?;
+            let options = ImportOptions { levels: options.levels, ..ImportOptions::default() };
+            arranged(source, &options)
+        }
+        None => arranged(source::read(path, options)?, options),
+    }
+}
+
+/// A table of the numbers.
+fn arranged(mut source: Source, options: &ImportOptions) -> Result<Imported, Problem> {
+    let is_said = !options.axes.is_empty() || options.lengths().is_some();
+    let left_out = if is_said { Vec::new() } else { source.tell_frames_and_channels() };
+    let Source { values, shape, axes, fortran, dtype, levels, descr } = source;
+    let layout = Layout::of(&shape, &axes, options)?;
+    let scale = Scale::of(&values, dtype, options.levels.or(levels))?;
     let ones = if scale.levels.is_none() { values.iter().filter(|&&value| value == 1.0).count() } else { 0 };
-    let mut table = Vec::new();
-    table.try_reserve_exact(values.len()).map_err(io::Error::from)?;
+    let mut table = source::reserved(values.len())?;
     if fortran || !layout.axes.is_empty() {
         // Axes of length 1 that were dropped change nothing in the order.
         let kept =
@@ -175,54 +223,9 @@ fn import(path: &Path, options: &ImportOptions) -> Result<Imported, Problem> {
         levels: scale.levels,
         first_level: scale.first,
         ones,
+        left_out,
+        record: None,
     })
-}
-
-/// Reads all numbers of a file.
-fn source(path: &Path, options: &ImportOptions) -> Result<Source, Problem> {
-    let (mut file, bytes) = header::open(path)?;
-    let header = match header::read(&mut file, bytes) {
-        Err(Fault::Format(FormatError::NotNpy { .. })) => {
-            file.seek(SeekFrom::Start(0))?;
-            return source_of_text(file, options);
-        }
-        Err(fault) => return Err(fault.into()),
-        Ok(header) => header,
-    };
-    let dtype = header.dtype.map_err(|dtype| ImportError::Dtype { dtype })?;
-    let shape = header.shape;
-    let count = shape.iter().try_fold(1_usize, |count, &length| count.checked_mul(length));
-    let expected = count.and_then(|count| count.checked_mul(dtype.size)).unwrap_or(usize::MAX) as u64;
-    let given = bytes - header.bytes;
-    if given != expected {
-        return Err(FormatError::Length { given, expected, shape }.into());
-    }
-    let count = count.unwrap_or(0);
-    let mut values = Vec::new();
-    values.try_reserve_exact(count).map_err(io::Error::from)?;
-    let mut block = vec![0; 1 << 16];
-    while values.len() < count {
-        let bytes = block.len().min(dtype.size * (count - values.len()));
-        file.read_exact(&mut block[..bytes])?;
-        values.extend(block[..bytes].chunks_exact(dtype.size).map(|bytes| dtype.decode(bytes)));
-    }
-    Ok(Source { values, shape, fortran: header.fortran, dtype: Some(dtype), descr: header.descr })
-}
-
-fn source_of_text(file: std::fs::File, options: &ImportOptions) -> Result<Source, Problem> {
-    let numbers = text::read(file).map_err(|unread| match unread {
-        Unread::Io(error) => Problem::from(error),
-        Unread::Import(problem) => problem.into(),
-    })?;
-    let count = numbers.values.len();
-    let shape = match numbers.columns {
-        // All on one line, in whichever order: a list.
-        Ok(columns) if columns == count && columns > 16 => vec![count],
-        Ok(columns) => vec![count / columns, columns],
-        Err(_) if options.dims.is_some() => vec![count],
-        Err(ragged) => return Err(ragged.into()),
-    };
-    Ok(Source { values: numbers.values, shape, fortran: false, dtype: None, descr: "text".into() })
 }
 
 impl ImportOptions {
@@ -262,6 +265,9 @@ impl fmt::Display for ImportOptions {
             ("width", number(self.width)),
             ("spp", number(self.spp)),
             ("dims", number(self.dims)),
+            ("channels", number(self.channels)),
+            ("dtype", self.dtype.map(|dtype| quoted(&dtype.to_string()))),
+            ("array", self.array.as_deref().map(quoted)),
         ];
         let flags = flags.into_iter().filter_map(|(flag, value)| Some(format!("--{flag} {}", value?)));
         out.write_str(&flags.collect::<Vec<_>>().join(" "))
@@ -270,7 +276,7 @@ impl fmt::Display for ImportOptions {
 
 impl fmt::Display for Imported {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        let Self { dtype, shape, axes, levels, first_level, ones, .. } = self;
+        let Self { dtype, shape, axes, levels, first_level, ones, left_out, record, .. } = self;
         write!(out, "{} of shape {shape:?} as ", dtype.trim_matches(['\'', '"']))?;
         match axes.as_slice() {
             [] => write!(out, "a list of samples in the order of a table")?,
@@ -281,9 +287,16 @@ impl fmt::Display for Imported {
             (Some(levels), 0) => write!(out, ", {levels} levels as (v + 1/2) / {levels}")?,
             (Some(levels), _) => write!(out, ", ranks from 1 as (v - 1/2) / {levels}")?,
         }
-        match ones {
-            0 => Ok(()),
-            ones => write!(out, ", {ones} of them 1, which became the largest number below"),
+        if *ones > 0 {
+            write!(out, ", {ones} of them 1, which became the largest number below")?;
+        }
+        if !left_out.is_empty() {
+            let names: Vec<String> = left_out.iter().map(usize::to_string).collect();
+            write!(out, ", without channel {}, constant or like another", names.join(", "))?;
+        }
+        match record {
+            Some(record) => write!(out, ", as {} says", record.display()),
+            None => Ok(()),
         }
     }
 }
@@ -306,19 +319,23 @@ pub(super) fn advice(path: &Path) -> String {
     }
     let flags = options.to_string();
     let flags = if flags.is_empty() { flags } else { format!("{flags} ") };
-    let [from, to] = [path, &path.with_extension("table.npy")].map(quoted);
+    let [from, to] = [path, &path.with_extension("table.npy")].map(quoted_path);
     format!("run `fsot import {from} {flags}--out {to}`, or SampleTable::import with these options")
 }
 
 /// A path as a shell reads it.
-fn quoted(path: &Path) -> String {
+fn quoted_path(path: &Path) -> String {
     let path = path.to_string_lossy();
     // A name that begins like a flag is none behind its folder.
-    let path = if path.starts_with('-') { format!("./{path}") } else { path.into_owned() };
+    if path.starts_with('-') { quoted(&format!("./{path}")) } else { quoted(&path) }
+}
+
+/// A word as a shell reads it.
+fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "/._-+:@%,".contains(c);
-    if !path.is_empty() && path.chars().all(is_plain) {
-        path
+    if !word.is_empty() && word.chars().all(is_plain) {
+        word.into()
     } else {
-        format!("'{}'", path.replace('\'', r"'\''"))
+        format!("'{}'", word.replace('\'', r"'\''"))
     }
 }

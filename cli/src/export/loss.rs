@@ -1,0 +1,147 @@
+//! What the numbers of a file cost: figures of the table before and after.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use fsot::classes::Classes;
+use fsot::files::{Depth, ExportOptions, Metadata, Rounding};
+use fsot::kernel::SpatialKernel;
+use fsot::metrics::{Bias, FilteredError, Integrands, Marginal, MeasureError};
+use fsot::{Config, Kernel, SampleTable};
+use serde::Serialize;
+
+use crate::{Failure, temporal};
+
+/// Samples times integrands of a family: a second's work.
+const MOST_WORK: usize = 1 << 21;
+
+/// More than this share of the filtered error is worth a word.
+const MUCH: f64 = 0.02;
+
+/// The kernel of the eye, as everywhere where none is known.
+const SIGMA_PX: f64 = 2.1;
+
+/// Figures of the table and of what is read from the files.
+#[derive(Debug, Serialize)]
+pub(super) struct Loss {
+    depth: Depth,
+    rounding: Rounding,
+    /// Whether the kernel is the table's own.
+    own_kernel: bool,
+    before: Figures,
+    after: Figures,
+}
+
+/// Ratios to white noise, but the last.
+#[derive(Clone, Debug, Serialize)]
+struct Figures {
+    /// Mean over families and pairs of dimensions.
+    filtered_error: f64,
+    /// The same of each family.
+    families: Vec<(String, f64)>,
+    bias: f64,
+    /// Counts of the emptiest and of the fullest level, relative to the mean.
+    evenness: [f64; 2],
+    /// How many levels were counted.
+    bins: usize,
+}
+
+impl Loss {
+    /// Of the table in this file.
+    pub(super) fn measure(
+        path: &Path,
+        table: &SampleTable,
+        options: &ExportOptions,
+    ) -> Result<Self, Failure> {
+        let (depth, rounding) = (options.depth(), options.rounding);
+        let own = own_kernel(path, table);
+        let own_kernel = own.is_some();
+        let kernel = own.unwrap_or_else(|| {
+            let temporal = temporal::or_default(None, table.extent().frames);
+            Kernel::product(SpatialKernel::Gaussian { sigma_px: SIGMA_PX }, temporal)
+        });
+        let before = Figures::measure(table, &kernel, depth)?;
+        let after = Figures::measure(&table.quantized(depth, rounding), &kernel, depth)?;
+        Ok(Self { depth, rounding, own_kernel, before, after })
+    }
+
+    /// One line for each figure.
+    pub(super) fn words(&self, to: &mut dyn Write) -> io::Result<()> {
+        let Self { depth, own_kernel, before, after, .. } = self;
+        let change = |before: f64, after: f64| 100.0 * (after / before - 1.0);
+        let worst = before
+            .families
+            .iter()
+            .zip(&after.families)
+            .map(|((name, before), (_, after))| (name, change(*before, *after)));
+        let worst = worst.max_by(|(_, first), (_, second)| first.total_cmp(second));
+        let kernel = if *own_kernel { "its own kernel" } else { "the eye's kernel" };
+        let share = change(before.filtered_error, after.filtered_error);
+        let [was, is] = [before.filtered_error, after.filtered_error];
+        write!(
+            to,
+            "filtered error under {kernel}: {was:.4} in the table, {is:.4} in the files ({share:+.1} %"
+        )?;
+        match worst {
+            Some((name, share)) => writeln!(to, "; {name} {share:+.1} %)")?,
+            None => writeln!(to, ")")?,
+        }
+        writeln!(to, "bias: {:.4} in the table, {:.4} in the files", before.bias, after.bias)?;
+        let [least, most] = after.evenness;
+        let [least_before, most_before] = before.evenness;
+        writeln!(
+            to,
+            "evenness: the emptiest and the fullest of {} levels have {least:.3} and {most:.3} of the mean \
+             (in the table {least_before:.3} and {most_before:.3})",
+            after.bins
+        )?;
+        if *depth == Depth::U8 && share > 100.0 * MUCH {
+            writeln!(to, "8 bits cost this table more than 2 %: where that matters, give --bits 16")?;
+        }
+        Ok(())
+    }
+}
+
+/// The kernel of the first term of the table's configuration, if that is known.
+fn own_kernel(path: &Path, table: &SampleTable) -> Option<Kernel> {
+    let metadata = Metadata::load(path).ok()?;
+    metadata.check(table).ok()?;
+    let config: Config = serde_json::from_value(metadata.configuration).ok()?;
+    config.terms.into_iter().find_map(|term| match term.classes {
+        Classes::Lattice { kernel, .. } => Some(kernel),
+        _ => None,
+    })
+}
+
+impl Figures {
+    fn measure(table: &SampleTable, kernel: &Kernel, depth: Depth) -> Result<Self, MeasureError> {
+        let samples = table.extent().samples();
+        let per_family = (MOST_WORK / samples).clamp(4, 64);
+        let dims: Vec<usize> = (0..table.dims().min(4)).collect();
+        let pairs: Vec<&[usize]> = dims.chunks(2).collect();
+        let (mut filtered_error, mut bias) = (0.0, 0.0);
+        let mut families: Vec<(String, f64)> = Vec::new();
+        for pair in &pairs {
+            let integrands = Integrands::random(pair.len(), per_family, 0)?;
+            let share = 1.0 / pairs.len() as f64;
+            let error = FilteredError::measure(table, pair, &integrands, kernel)?.spatio_temporal;
+            filtered_error += share * error.mean.mean;
+            bias += share * Bias::measure(table, pair, &integrands)?.table.mean.mean;
+            for (at, family) in error.families.iter().enumerate() {
+                match families.get_mut(at) {
+                    Some((_, ratio)) => *ratio += share * family.ratio.mean,
+                    None => families.push((family.name.to_string(), share * family.ratio.mean)),
+                }
+            }
+        }
+        // Levels, or as many of them together as leave a sample each.
+        let most = depth.levels().unwrap_or(1 << 8) as usize;
+        let bins = most.min(1 << samples.max(2).ilog2().min(16));
+        let mut evenness = [f64::INFINITY, 0.0_f64];
+        for &dim in &dims {
+            let [least, greatest] = Marginal::measure(table, dim, bins)?.extremes();
+            evenness = [evenness[0].min(least), evenness[1].max(greatest)];
+        }
+        Ok(Self { filtered_error, families, bias, evenness, bins })
+    }
+}

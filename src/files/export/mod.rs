@@ -1,0 +1,206 @@
+//! Tables in the formats of engines.
+//!
+//! [`parts`] says which part of a table is in which file, [`encode`] what number a value becomes; a format
+//! is a rule ([`options`]) and a function that writes one file.
+
+mod diffuse;
+mod encode;
+#[cfg(feature = "image")]
+mod exr;
+pub(in crate::files) mod fast;
+mod ktx2;
+mod lines;
+mod options;
+mod parts;
+#[cfg(feature = "image")]
+mod png;
+pub(in crate::files) mod raw;
+mod record;
+pub(in crate::files) mod source;
+
+use std::fmt;
+use std::io::{self, Seek, Write};
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use self::encode::Encoded;
+pub use self::options::{Depth, ExportOptions, Format, Rounding};
+use self::parts::Part;
+pub use self::record::{ExportRecord, RecordedFile};
+use super::metadata::Hash;
+use super::whole::{self, WholeFile};
+use crate::error::ExportError;
+use crate::table::SampleTable;
+use crate::table::extent::Extent;
+
+/// Files that were written, and what they hold.
+///
+/// As text it is one sentence.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Exported {
+    /// The files, without the record.
+    pub files: Vec<PathBuf>,
+    /// The record beside them.
+    pub record_path: PathBuf,
+    /// What the record says.
+    pub record: ExportRecord,
+}
+
+impl ExportOptions {
+    /// The files that an export to this path writes, the record last. Nothing is written.
+    ///
+    /// # Errors
+    /// Those of [`SampleTable::export`], but the system's.
+    pub fn files(
+        &self,
+        path: impl AsRef<Path>,
+        extent: Extent,
+        dims: usize,
+    ) -> Result<Vec<PathBuf>, ExportError> {
+        let path = path.as_ref();
+        let mut files: Vec<PathBuf> =
+            self.plan(path, extent, dims)?.into_iter().map(|(path, _)| path).collect();
+        files.extend(self.text_path(&files[0]));
+        files.push(ExportRecord::path_beside(path));
+        Ok(files)
+    }
+
+    /// The text file beside a format that says nothing itself.
+    fn text_path(&self, path: &Path) -> Option<PathBuf> {
+        (self.format == Format::Raw).then(|| raw::text_path(path))
+    }
+
+    fn plan(&self, path: &Path, extent: Extent, dims: usize) -> Result<Vec<(PathBuf, Part)>, ExportError> {
+        let (depth, depths) = (self.depth(), self.format.rule().depths);
+        if !depths.contains(&depth) {
+            let holds = depths.iter().map(|depth| depth.name()).collect::<Vec<_>>().join(" or ");
+            return Err(ExportError::Depth { format: self.format.name(), given: depth.name(), holds });
+        }
+        parts::files(path, self, extent, dims)
+    }
+}
+
+impl SampleTable {
+    /// Writes the table in a format of somebody else's, and how to read it in a `.json` beside it
+    /// ([`ExportRecord::path_beside`]). [`import`](Self::import) reads it back.
+    ///
+    /// What a file cannot hold goes to several: one for each sample of a pixel, and for each four
+    /// consecutive dimensions (see [`ExportOptions::name`]). All of them are complete before the first
+    /// takes its name; if one can't, those before it are as they were. Takes less memory than the table
+    /// beside it.
+    ///
+    /// # Errors
+    /// What the format cannot hold, names that are none, and whatever stands against writing.
+    ///
+    /// ```
+    /// use fsot::files::{ExportOptions, Format};
+    /// use fsot::{Extent, SampleTable};
+    ///
+    /// let folder = tempfile::tempdir()?;
+    /// let path = folder.path().join("mask.ktx2");
+    /// let table = SampleTable::white_noise(Extent::animation(4, 16, 16), 2, 0)?;
+    /// let exported = table.export(&path, &ExportOptions::new(Format::Ktx2))?;
+    /// assert_eq!(exported.files, [path]);
+    /// println!("{exported}");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn export(&self, path: impl AsRef<Path>, options: &ExportOptions) -> Result<Exported, ExportError> {
+        let path = path.as_ref();
+        let plan = options.plan(path, self.extent(), self.dims())?;
+        let record_path = ExportRecord::path_beside(path);
+        let cannot_write = |path: &Path, source| ExportError::Io { path: path.into(), source };
+        let text_path = options.text_path(&plan[0].0);
+        let paths = plan.iter().map(|(path, _)| path).chain(&text_path).chain([&record_path]);
+        for path in paths {
+            whole::check(path).map_err(|error| cannot_write(path, error))?;
+        }
+        let encoded = Encoded::new(self, options);
+        let mut complete = Vec::with_capacity(plan.len() + 1);
+        for (path, part) in &plan {
+            let file = WholeFile::write(path, |out| write(out, path, options.format, &encoded, part));
+            complete.push(file.map_err(|error| cannot_write(path, error))?);
+        }
+        if let Some(text_path) = &text_path {
+            let (path, part) = &plan[0];
+            let text = raw::text(path, &encoded, part);
+            let file = WholeFile::write(text_path, |out| out.write_all(text.as_bytes()));
+            complete.push(file.map_err(|error| cannot_write(text_path, error))?);
+        }
+        let record = record(&encoded, options, &plan);
+        let beside = WholeFile::write(&record_path, |out| {
+            serde_json::to_writer_pretty(&mut *out, &record)?;
+            out.write_all(b"\n")
+        });
+        complete.push(beside.map_err(|error| cannot_write(&record_path, error))?);
+        whole::commit_all(complete).map_err(|(path, error)| cannot_write(&path, error))?;
+        Ok(Exported { files: plan.into_iter().map(|(path, _)| path).collect(), record_path, record })
+    }
+}
+
+/// Writes one file.
+fn write(
+    out: &mut (impl Write + Seek),
+    path: &Path,
+    format: Format,
+    values: &Encoded,
+    part: &Part,
+) -> io::Result<()> {
+    match format {
+        #[cfg(feature = "image")]
+        Format::Atlas | Format::Slices => png::write(out, values, part),
+        #[cfg(feature = "image")]
+        Format::Exr | Format::ExrLayers => exr::write(out, values, part),
+        Format::Ktx2 => ktx2::write(out, values, part),
+        Format::Raw => raw::write(out, values, part),
+        Format::Fast => fast::write(out, values, part),
+        Format::Pbrt => source::write_pbrt(out, path, values, part),
+        Format::C => source::write_header(out, path, values, part),
+        Format::Csv => lines::write(out, values, part, ",", true),
+        Format::Dat => lines::write(out, values, part, " ", false),
+    }
+}
+
+fn record(values: &Encoded, options: &ExportOptions, plan: &[(PathBuf, Part)]) -> ExportRecord {
+    let Extent { frames, height, width, spp } = values.extent();
+    let name = |path: &PathBuf| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let files = plan.iter().map(|(path, part)| {
+        let [frames, samples, dims] =
+            [&part.frames, &part.samples, &part.dims].map(|range| [range.start, range.end]);
+        RecordedFile { name: name(path), frames, samples, dims }
+    });
+    let count = frames * height * width * spp * values.dims();
+    let mut hash = Hash::default();
+    (0..count).for_each(|at| hash.add(values.decoded(at)));
+    ExportRecord {
+        kind: ExportRecord::KIND.into(),
+        crate_version: env!("CARGO_PKG_VERSION").into(),
+        format: options.format,
+        bits: values.depth,
+        rounding: options.rounding,
+        decode: values.depth.decode_rule().into(),
+        shape: [frames, height, width, spp, values.dims()],
+        sha256: hash.digits(),
+        files: files.collect(),
+    }
+}
+
+impl fmt::Display for Exported {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        let Self { files, record, .. } = self;
+        match files.as_slice() {
+            [file] => write!(out, "{}", file.display())?,
+            [first, .., last] => {
+                write!(out, "{} files, {} to {}", files.len(), first.display(), last.display())?
+            }
+            [] => write!(out, "no files")?,
+        }
+        let ExportRecord { format, bits, decode, shape, .. } = record;
+        write!(out, ": {format} of [frame, y, x, sample, dim] = {shape:?}, ")?;
+        match bits.levels() {
+            Some(_) => write!(out, "{bits} bits, k stands for {decode}"),
+            None => write!(out, "floats of {} bits", 8 * bits.bytes()),
+        }
+    }
+}
