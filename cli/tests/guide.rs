@@ -13,18 +13,19 @@ fn quick(verb: &str) -> &'static [&'static str] {
     }
 }
 
-/// Lines of the guide that a shell is to run, with what stands before `marker` cut off.
-fn commands(guide: &str, marker: &str) -> Vec<Vec<String>> {
+/// The arguments of all `fsot` that a shell is to run.
+fn commands(guide: &str) -> Vec<Vec<String>> {
     let shell = guide.split("```").filter_map(|block| block.strip_prefix("sh\n"));
-    let lines = shell.flat_map(str::lines).filter_map(|line| line.strip_prefix(marker));
-    lines.map(|line| line.split_whitespace().map(String::from).collect()).collect()
+    let lines = shell.flat_map(str::lines).filter_map(|line| line.strip_prefix("fsot "));
+    let words = |line: &str| line.split_whitespace().map(|word| word.trim_matches('\'').into()).collect();
+    lines.map(words).collect()
 }
 
 #[test]
 fn the_commands_of_the_guide_run() {
     let guide = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/choosing.md");
     let home = tempfile::tempdir().unwrap();
-    let commands = commands(&fs::read_to_string(guide).unwrap(), "fsot ");
+    let commands = commands(&fs::read_to_string(guide).unwrap());
     for verb in ["table", "inspect", "export"] {
         assert!(commands.iter().any(|command| command[0] == verb), "the guide has no {verb}");
     }

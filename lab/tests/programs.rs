@@ -176,6 +176,43 @@ fn reading_tells_good_ways_from_bad_ones() {
     assert!(complaint(env!("CARGO_BIN_EXE_reading"), &arguments).contains('7'));
 }
 
+/// What the guide, docs/choosing.md, has `reading` do, on tables of eight pixels.
+#[test]
+fn the_guide_reads_as_it_says() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let guide = fs::read_to_string(root.join("docs/choosing.md")).unwrap();
+    let command = "cargo run --release -p fsot-lab --bin reading -- ";
+    let shell = guide.split("```").filter_map(|block| block.strip_prefix("sh\n"));
+    let lines: Vec<&str> = shell.flat_map(str::lines).filter_map(|line| line.strip_prefix(command)).collect();
+    assert!(lines.len() > 5, "{lines:?}");
+    let home = TempDir::new().unwrap();
+    for line in lines {
+        let is_scalar = line.contains("_1d.npy");
+        let mut arguments = vec![String::from("--integrands=1")];
+        for word in line.split_whitespace() {
+            let Some((stem, "")) = word.split_once(".npy") else {
+                arguments.push(word.to_owned());
+                continue;
+            };
+            assert!(!stem.starts_with("data/") || root.join(word).exists(), "{word} is not there");
+            let frames = if stem.contains("x1_1spp") { 1 } else { 2 };
+            let dims = if is_scalar {
+                1
+            } else if stem.ends_with("_4d") {
+                4
+            } else {
+                2
+            };
+            let table = SampleTable::white_noise(Extent::animation(frames, 8, 8), dims, 0).unwrap();
+            let path = home.path().join(format!("{}.npy", stem.replace('/', "-")));
+            table.save(&path).unwrap();
+            arguments.push(path.to_str().unwrap().to_owned());
+        }
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        assert!(printed(env!("CARGO_BIN_EXE_reading"), &arguments).contains("\nas it is "), "{line}");
+    }
+}
+
 #[test]
 fn demand_has_a_row_per_share() {
     let text = printed(env!("CARGO_BIN_EXE_demand"), &["--quick"]);

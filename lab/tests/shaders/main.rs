@@ -84,6 +84,16 @@ fn hlsl_functions(text: &str) -> Module {
     glsl(&format!("#version 450\n{text}\nlayout(local_size_x = 1) in;\nvoid main() {{}}\n"))
 }
 
+/// What is to be pasted, for this table.
+fn functions(language: &str, table: &SampleTable) -> Module {
+    let text = shaped(&source(language), table, 256);
+    match language {
+        "glsl" => glsl(&text),
+        "wgsl" => wgsl(&text),
+        _ => hlsl_functions(&text),
+    }
+}
+
 /// A table whose numbers all differ, in tiles that are no powers of two.
 fn odd() -> SampleTable {
     SampleTable::white_noise(Extent::animation(3, 5, 7).with_spp(2), 3, 1).unwrap()
@@ -151,12 +161,7 @@ fn what_is_pasted_finds_the_table_in_every_language() {
     for table in [odd(), even()] {
         let [frames, height, width, spp, dims] = table.shape();
         for language in ["glsl", "wgsl", "hlsl"] {
-            let text = shaped(&source(language), &table, 256);
-            let module = match language {
-                "glsl" => glsl(&text),
-                "wgsl" => wgsl(&text),
-                _ => hlsl_functions(&text),
-            };
+            let module = functions(language, &table);
             let mut machine = Machine::new(&module, HashMap::new(), Box::new(|_, _| [0.0; 4]));
             let [width, height, frames] = [width, height, frames].map(|len| len as u32);
             for frame in [0, 1, frames - 1, frames, 5 * frames + 1] {
@@ -191,12 +196,7 @@ fn displacements_are_those_of_the_library() {
     for (side, exact) in [([64, 64], true), ([128, 128], true), ([48, 20], false)] {
         let table = SampleTable::white_noise(Extent::still(side[0], side[1]), 1, 0).unwrap();
         for language in ["glsl", "wgsl", "hlsl"] {
-            let text = shaped(&source(language), &table, 256);
-            let module = match language {
-                "glsl" => glsl(&text),
-                "wgsl" => wgsl(&text),
-                _ => hlsl_functions(&text),
-            };
+            let module = functions(language, &table);
             let mut machine = Machine::new(&module, HashMap::new(), Box::new(|_, _| [0.0; 4]));
             for k in 0..1000 {
                 let by = machine.call("fsot_displacement", &[&[U(k)]]);
@@ -221,6 +221,45 @@ fn the_example_in_glsl_reads_the_table() {
 fn the_example_in_wgsl_reads_the_table() {
     for (table, levels) in [(odd(), 256), (even(), 1 << 16)] {
         example_reads(&wgsl(&shaped(&source("wgsl"), &table, levels)), &table, levels);
+    }
+}
+
+/// The lines of the guide's table for a language: where the table is, and how it is read.
+fn lines_of_the_guide(language: &str) -> Vec<(String, String)> {
+    let guide = fs::read_to_string(folder().join("../../docs/choosing.md")).unwrap();
+    let rows = guide.lines().filter_map(|line| line.strip_prefix(&format!("| {language}, ")));
+    let cells = rows.filter_map(|row| row.strip_suffix("` |")?.split_once(" | `"));
+    cells.map(|(place, line)| (place.to_owned(), line.to_owned())).collect()
+}
+
+#[test]
+fn the_lines_of_the_guide_compile() {
+    let table = even();
+    for language in ["GLSL", "WGSL"] {
+        let text = shaped(&source(&language.to_lowercase()), &table, 256);
+        let (functions, _) = text.split_once("// EXAMPLE").unwrap();
+        let lines = lines_of_the_guide(language);
+        assert_eq!(lines.len(), 2, "{lines:?}");
+        for (place, line) in lines {
+            if language == "WGSL" {
+                let kind = if place == "array" { "texture_2d_array<f32>" } else { "texture_2d<f32>" };
+                wgsl(&format!(
+                    "{functions}\n@group(0) @binding(0) var table: {kind};\n\
+                     fn read(pixel: vec2<u32>, frame: u32) -> vec2<f32> {{ {line} return u; }}\n"
+                ));
+            } else {
+                let kind = if place == "array" { "2DArray" } else { "2D" };
+                // naga has textures and samplers apart.
+                let line =
+                    line.replace("texelFetch(table,", &format!("texelFetch(sampler{kind}(table, nearest),"));
+                glsl(&format!(
+                    "{functions}\nlayout(set = 0, binding = 0) uniform texture{kind} table;\n\
+                     layout(set = 0, binding = 1) uniform sampler nearest;\n\
+                     vec2 read(uvec2 pixel, uint frame) {{ {line} return u; }}\n\
+                     layout(local_size_x = 1) in;\nvoid main() {{}}\n"
+                ));
+            }
+        }
     }
 }
 
