@@ -136,6 +136,83 @@ struct Raced {
     bias: f64,
 }
 
+/// The figures of a way of reading: one frame, one pixel, filtered, all frames.
+fn figures_of(text: &str, way: &str) -> Vec<f64> {
+    let row = text.lines().find(|line| line.strip_prefix(way).is_some_and(|rest| rest.starts_with("  ")));
+    let row = row.unwrap_or_else(|| panic!("{way} is missing in: {text}"));
+    row[way.len()..].split_whitespace().map(|figure| figure.parse().unwrap()).collect()
+}
+
+#[test]
+fn reading_tells_good_ways_from_bad_ones() {
+    let tables = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/tables");
+    let [table, still] = ["64x64x16_1spp_2d_ema.npy", "64x64x1_1spp_2d.npy"].map(|name| tables.join(name));
+    let still = still.to_str().unwrap();
+    let quick = ["--frames", "16", "--integrands", "4"];
+    let arguments = [&[table.to_str().unwrap(), "--still", still], &quick[..]].concat();
+    let text = printed(env!("CARGO_BIN_EXE_reading"), &arguments);
+    let filtered = |way| figures_of(&text, way)[2];
+    // Four integrands per family leave a spread of a tenth; all these are further apart.
+    let (own, elsewhere) = (filtered("as it is"), filtered("a still table, elsewhere in every frame"));
+    assert!(own < 0.13 && own < 0.7 * elsewhere, "{text}");
+    assert!((0.13..0.25).contains(&elsewhere), "{text}");
+    for (way, least) in [
+        ("no table: white noise", 0.8),
+        ("values shifted per pixel", 0.5),
+        ("8 bits, taken for sRGB", 2.0),
+        ("bilinear filter between four texels", 2.0),
+        ("the first frame again and again", 1.0),
+    ] {
+        assert!(filtered(way) > least, "{way}: {text}");
+    }
+    assert!((filtered("8 bits") / own - 1.0).abs() < 0.1, "{text}");
+
+    // Two uses at one place are as one use that counts twice.
+    let text = printed(env!("CARGO_BIN_EXE_reading"), &[&[still, "--uses", "2"], &quick[..]].concat());
+    let frame = |way| figures_of(&text, way)[0];
+    assert!(frame("uses at the same place") > 1.2 * frame("as it is"), "{text}");
+
+    let arguments = [still, "--still", table.to_str().unwrap(), "--dims", "0,7"];
+    assert!(complaint(env!("CARGO_BIN_EXE_reading"), &arguments).contains('7'));
+}
+
+/// What the guide, docs/choosing.md, has `reading` do, on tables of eight pixels.
+#[test]
+fn the_guide_reads_as_it_says() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let guide = fs::read_to_string(root.join("docs/choosing.md")).unwrap();
+    let command = "cargo run --release -p fsot-lab --bin reading -- ";
+    let shell = guide.split("```").filter_map(|block| block.strip_prefix("sh\n"));
+    let lines: Vec<&str> = shell.flat_map(str::lines).filter_map(|line| line.strip_prefix(command)).collect();
+    assert!(lines.len() > 5, "{lines:?}");
+    let home = TempDir::new().unwrap();
+    for line in lines {
+        let is_scalar = line.contains("_1d.npy");
+        let mut arguments = vec![String::from("--integrands=1")];
+        for word in line.split_whitespace() {
+            let Some((stem, "")) = word.split_once(".npy") else {
+                arguments.push(word.to_owned());
+                continue;
+            };
+            assert!(!stem.starts_with("data/") || root.join(word).exists(), "{word} is not there");
+            let frames = if stem.contains("x1_1spp") { 1 } else { 2 };
+            let dims = if is_scalar {
+                1
+            } else if stem.ends_with("_4d") {
+                4
+            } else {
+                2
+            };
+            let table = SampleTable::white_noise(Extent::animation(frames, 8, 8), dims, 0).unwrap();
+            let path = home.path().join(format!("{}.npy", stem.replace('/', "-")));
+            table.save(&path).unwrap();
+            arguments.push(path.to_str().unwrap().to_owned());
+        }
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        assert!(printed(env!("CARGO_BIN_EXE_reading"), &arguments).contains("\nas it is "), "{line}");
+    }
+}
+
 #[test]
 fn demand_has_a_row_per_share() {
     let text = printed(env!("CARGO_BIN_EXE_demand"), &["--quick"]);
