@@ -23,6 +23,9 @@ const KIND: &str = "fsot export ";
 
 /// Imports all files of the record that lies beside this path, or there itself; `None` if there is none, or
 /// if options say how to read the file.
+///
+/// The record is that of the last export to this path. A file there that it does not list is of an earlier
+/// one.
 pub(super) fn import(path: &Path, options: &ImportOptions) -> Option<Result<Imported, TableError>> {
     if *options != ImportOptions::default() {
         return None;
@@ -30,13 +33,6 @@ pub(super) fn import(path: &Path, options: &ImportOptions) -> Option<Result<Impo
     let is_record = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
     let place = if is_record { path.to_owned() } else { ExportRecord::path_beside(path) };
     let record = read(&place)?;
-    let named = path.file_name().map(|name| name.to_string_lossy());
-    // A file beside those of the record has only its name from them.
-    let is_listed =
-        |record: &ExportRecord| record.files.iter().any(|file| Some(&*file.name) == named.as_deref());
-    if record.as_ref().is_ok_and(|record| !is_record && path.exists() && !is_listed(record)) {
-        return None;
-    }
     Some(record.and_then(|record| all(&place, &record)))
 }
 
