@@ -84,6 +84,11 @@ fn all(place: &Path, record: &ExportRecord) -> Result<Imported, TableError> {
     let pieces: Option<Vec<Piece>> = record.files.iter().map(|file| piece(place, record, file)).collect();
     let pieces =
         pieces.ok_or_else(|| refuse("names a file in another folder, or more than its shape has"))?;
+    let mut names: Vec<&str> = record.files.iter().map(|file| file.name.as_str()).collect();
+    names.sort_unstable();
+    if names.windows(2).any(|pair| pair[0] == pair[1]) {
+        return Err(refuse("names a file twice"));
+    }
     let held = |piece: &Piece| (piece.frames.len() * piece.samples.len() * piece.dims.len()) as u64;
     let total = pieces.iter().map(held).fold(0, u64::saturating_add);
     if total != (frames * spp * dims) as u64 {
@@ -145,15 +150,16 @@ fn several(
     extent: Extent,
     refuse: impl Fn(&str) -> TableError,
 ) -> Result<Imported, TableError> {
+    // All of them before there is a table, whose size is but a word of the record.
+    let read = |piece: &Piece| one(piece, record, extent);
+    let mut read: Vec<Imported> = pieces.iter().map(read).collect::<Result<_, _>>()?;
     let dims = record.shape[4];
     let count = extent.samples() * dims;
     let mut values = Vec::new();
     let no_memory = |error| TableError::Io { verb: "read", path: place.into(), source: error };
     values.try_reserve_exact(count).map_err(|error| no_memory(error.into()))?;
     values.resize(count, f32::NAN);
-    let mut last = None;
-    for piece in pieces {
-        let imported = one(piece, record, extent)?;
+    for (piece, imported) in pieces.iter().zip(&read) {
         let mut read = imported.table.values().iter();
         for frame in piece.frames.clone() {
             for site in frame * extent.height * extent.width..(frame + 1) * extent.height * extent.width {
@@ -164,10 +170,9 @@ fn several(
                 }
             }
         }
-        last = Some(imported);
     }
     // Numbers that were read are none, so that a part without a file is one that another has twice.
-    let Some(imported) = last.filter(|_| !values.iter().any(|value| value.is_nan())) else {
+    let Some(imported) = read.pop().filter(|_| !values.iter().any(|value| value.is_nan())) else {
         return Err(refuse("holds a part of the table twice, or not at all"));
     };
     Ok(Imported { table: SampleTable::trusted(extent, dims, values), ..imported })
