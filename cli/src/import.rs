@@ -51,7 +51,11 @@ pub struct Arguments {
     out: PathBuf,
     /// The axes of the file, slowest first: some of frame, y, x, sample and dim [default: by their number and
     /// lengths, as is then said].
-    #[arg(long, value_delimiter = ',', conflicts_with_all = ["frames", "height", "width", "spp", "dims", "channels"])]
+    #[arg(
+        long,
+        value_delimiter = ',',
+        conflicts_with_all = ["frames", "height", "width", "spp", "dims", "channels"],
+    )]
     axes: Vec<Axis>,
     /// Levels of whole numbers [default: found, as above].
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]

@@ -108,6 +108,44 @@ fn text_that_is_imported() {
 }
 
 #[test]
+fn sources_that_are_imported() {
+    let seeds = seeds::sources();
+    fuzz(
+        "mask.h",
+        3000,
+        |random| mutate::source(random, &seeds),
+        |path, random| {
+            let usual = SampleTable::import(path, &ImportOptions::default());
+            let chosen = SampleTable::import(path, &mutate::options(random));
+            [usual, chosen].into_iter().flatten().any(|imported| is_table(&imported.table))
+        },
+    );
+}
+
+/// What stands beside files is no safer than what is in them.
+#[test]
+fn descriptions_and_records() {
+    let home = tempfile::tempdir().unwrap();
+    let [text, record] = seeds::exported(home.path());
+    for (name, seed, file) in [("alone.raw.txt", text, "alone.raw"), ("mask.bin.json", record, "mask.bin")] {
+        fuzz(
+            name,
+            2000,
+            |random| mutate::json(random, &seed),
+            |path, random| {
+                // The damaged one among the sound files.
+                let place = home.path().join(name);
+                std::fs::copy(path, &place).unwrap();
+                let options = mutate::options(random);
+                let options = if name.ends_with("json") { ImportOptions::default() } else { options };
+                let imported = SampleTable::import(home.path().join(file), &options);
+                imported.is_ok_and(|imported| is_table(&imported.table))
+            },
+        );
+    }
+}
+
+#[test]
 fn metadata() {
     let home = tempfile::tempdir().unwrap();
     let (table, json) = seeds::metadata(home.path());

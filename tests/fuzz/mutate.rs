@@ -271,5 +271,55 @@ pub fn options(random: &mut Random) -> ImportOptions {
     let count = if named { random.random_range(0..=5) } else { 0 };
     let axes = (0..count).map(|_| *pick(random, &Axis::ALL)).collect();
     let levels = random.random_bool(0.2).then(|| *pick(random, &[0, 1, 2, 24, 256, 1 << 40, u64::MAX]));
-    ImportOptions { axes, levels, frames, height, width, spp, dims }
+    let channels = random.random_bool(0.1).then(|| *pick(random, &[0, 1, 2, 3, 4, usize::MAX]));
+    let types = ["u1", "<u2", ">u2", "<f2", "<f4", ">f4", "<f8", "i1", "b1"];
+    let dtype = random.random_bool(0.1).then(|| pick(random, &types).parse().expect("a type"));
+    let array = random.random_bool(0.1).then(|| (*pick(random, &["a", "mask", ""])).into());
+    ImportOptions { axes, levels, frames, height, width, spp, dims, channels, dtype, array }
+}
+
+/// C of which half the time only words are changed.
+pub fn source(random: &mut Random, seeds: &[Vec<u8>]) -> Vec<u8> {
+    if random.random() {
+        return bytes(random, seeds);
+    }
+    let mut text = String::from_utf8_lossy(&pick(random, seeds)[..]).into_owned();
+    let among = [
+        "{",
+        "}",
+        "},",
+        "{{",
+        "[",
+        "]",
+        "(",
+        ",",
+        ";",
+        "=",
+        "-",
+        "+",
+        "/*",
+        "*/",
+        "//",
+        "\n",
+        "\\\n",
+        "#",
+        "#define FSOT_A_FRAMES 3\n",
+        "#define FSOT_A_DIMS 99999999999999999999\n",
+        "\"",
+        "'",
+        "0x",
+        "0x1p-1f",
+        "1e400",
+        "08",
+        ".5f",
+        "0.99999999f",
+        "65536",
+        "nan",
+        "float a[]",
+        "uint16_t BlueNoiseTextures[2][3][4]",
+        "BlueNoiseTextures",
+        "\u{e9}",
+    ];
+    words(random, &mut text, &among);
+    text.into_bytes()
 }

@@ -33,6 +33,14 @@ fn a_table_goes_out_and_comes_back() {
         ("--to ktx2 --out mask.ktx2 --bits half", Depth::Half, Rounding::Floor),
         ("--to exr --out mask.exr", Depth::F32, Rounding::Floor),
         ("--to exr-layers --out mask.exr --bits half", Depth::Half, Rounding::Floor),
+        ("--to raw --out mask.raw", Depth::F32, Rounding::Floor),
+        ("--to raw --out mask.raw --bits half", Depth::Half, Rounding::Floor),
+        ("--to raw --out mask.raw --bits 8 --rounding diffuse", Depth::U8, Rounding::Diffuse),
+        ("--to fast --out mask.bin", Depth::F32, Rounding::Floor),
+        ("--to pbrt --out mask.cpp", Depth::U16, Rounding::Floor),
+        ("--to c --out mask.h --bits 8", Depth::U8, Rounding::Floor),
+        ("--to csv --out mask.csv", Depth::F32, Rounding::Floor),
+        ("--to dat --out mask.dat", Depth::F32, Rounding::Floor),
     ] {
         run(home.path(), &format!("export table.npy --no-loss {arguments}"));
         let path = arguments.split(' ').find(|word| word.starts_with("mask.")).unwrap();
@@ -146,4 +154,32 @@ fn sets_are_imported_by_a_pattern() {
     let (_, err) = texts(&output);
     assert!(output.status.code() == Some(1) && err.contains("the PNG cannot be read"), "{err}");
     assert!(!home.path().join("other.npy").exists());
+}
+
+/// The files alone, without the record, by what they say themselves or by flags.
+#[test]
+fn files_without_a_record_are_read_by_flags() {
+    let home = home();
+    let table = load(home.path(), "table.npy");
+    for (to, flags) in [
+        ("raw --out a.raw", ""),
+        ("c --out a.h", ""),
+        ("csv --out a.csv", "--frames 4"),
+        ("dat --out a.dat", "--frames 4"),
+        ("fast --out a.bin", "--dtype <f4 --channels 4 --dims 2 --frames 4"),
+    ] {
+        let (out, _) = run(home.path(), &format!("export table.npy --to {to}"));
+        let path = to.split(' ').next_back().unwrap();
+        assert!(out.contains(&format!("{path}.json: how to read it")), "{out}");
+        fs::remove_file(home.path().join(format!("{path}.json"))).unwrap();
+        run(home.path(), &format!("import {path} {flags} --out back.npy"));
+        assert_eq!(load(home.path(), "back.npy"), table, "{to}");
+    }
+    // Which of two arrays.
+    let header = fs::read_to_string(home.path().join("a.h")).unwrap();
+    fs::write(home.path().join("a.h"), format!("static const int sizes[2] = {{16, 16}};\n{header}")).unwrap();
+    let (_, err) = texts(&command(home.path(), "import a.h --out back.npy").output().unwrap());
+    assert!(err.contains("sizes, fsot_a_values: name one, --array NAME"), "{err}");
+    run(home.path(), "import a.h --array fsot_a_values --out back.npy");
+    assert_eq!(load(home.path(), "back.npy"), table);
 }
