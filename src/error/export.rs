@@ -33,7 +33,7 @@ pub enum ExportError {
         holds: String,
     },
     /// The path has another extension than files of the format.
-    #[error("{path:?} cannot name such a file: give a name that ends in .{extension}")]
+    #[error("{path:?} cannot name such a file: give a name in UTF-8 that ends in .{extension}")]
     FileName {
         /// The path.
         path: PathBuf,

@@ -274,6 +274,37 @@ mod tests {
         assert_eq!(names(home.path()), ["a"]);
     }
 
+    /// The second of three cannot take its name: the first has what it had, or is gone.
+    #[test]
+    fn files_appear_together_or_not_at_all() {
+        let home = tempfile::tempdir().unwrap();
+        let paths = ["a", "b", "c"].map(|name| home.path().join(name));
+        for there_before in [true, false] {
+            if there_before {
+                fs::write(&paths[0], "old").unwrap();
+            } else {
+                fs::remove_file(&paths[0]).unwrap();
+            }
+            let files = paths.each_ref().map(|path| pending(path, "new"));
+            fs::remove_file(&files[1].file).unwrap();
+            let (path, _) = commit_all(files.into()).unwrap_err();
+            assert_eq!(path, paths[1]);
+            let left = if there_before { &["a"][..] } else { &[] };
+            assert_eq!(names(home.path()), left);
+            assert!(!there_before || fs::read_to_string(&paths[0]).unwrap() == "old");
+        }
+        // A folder that has come in between is found out before any takes its name.
+        let files = paths.each_ref().map(|path| pending(path, "new"));
+        fs::create_dir(&paths[2]).unwrap();
+        assert!(commit_all(files.into()).is_err());
+        assert_eq!(names(home.path()), ["c"]);
+        fs::remove_dir(&paths[2]).unwrap();
+        fs::write(&paths[1], "old").unwrap();
+        commit_all(paths.each_ref().map(|path| pending(path, "new")).into()).unwrap();
+        assert!(paths.iter().all(|path| fs::read_to_string(path).unwrap() == "new"));
+        assert_eq!(names(home.path()).len(), 3);
+    }
+
     #[cfg(unix)]
     #[test]
     fn a_link_is_written_through_and_a_device_is_refused() {

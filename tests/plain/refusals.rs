@@ -122,6 +122,11 @@ fn records_that_cannot_be_are_refused() {
         let problem = refusal(refused(from, to));
         assert!(matches!(problem, ImportError::Record { .. }), "{from} {to}: {problem}");
     }
+    // A file in two places, and a table that no file is as large as: before memory is asked for.
+    let problem = refusal(refused("mask_s0_d4.bin", "mask_s0_d0-3.bin"));
+    assert!(problem.to_string().contains("names a file twice"), "{problem}");
+    let problem = refusal(refused("    4,\n    4,", "    10000,\n    10000,"));
+    assert!(matches!(problem, ImportError::Lengths { .. }), "{problem}");
     let error = refused("fsot export 1", "fsot export 2");
     assert!(matches!(error, TableError::Format { .. }), "{error}");
     let error = refused("\"shape\": [\n    2", "\"shape\": [\n    0");

@@ -112,7 +112,7 @@ fn what_cannot_be_exported_is_refused_in_a_sentence() {
     for (arguments, code, words) in [
         ("export table.npy --to atlas --out mask.png --bits 32", 1, "give --bits 8 or 16"),
         ("export table.npy --to exr --out mask.exr --bits 8", 1, "give --bits 32 or half"),
-        ("export table.npy --to atlas --out mask.exr", 1, "give a name that ends in .png"),
+        ("export table.npy --to atlas --out mask.exr", 1, "give a name in UTF-8 that ends in .png"),
         ("export table.npy --to slices --out mask.png --name x", 1, "put {frame} into it"),
         ("export table.npy --to slices --out mask.png --name {z}", 1, "has no meaning for {z}"),
         ("export table.npy --to atlas --out folder.png", 1, "it is a directory"),

@@ -28,6 +28,8 @@ pub(super) struct Lexer<R> {
     pub(super) line: usize,
     /// Nothing but blanks stood on this line.
     at_start: bool,
+    /// The last token was the first of its line.
+    is_first: bool,
     /// Ends of lines are marks.
     in_directive: bool,
     /// Whole numbers that macros with the names of ours stand for, behind `FSOT_…`; the first of a kind.
@@ -37,22 +39,17 @@ pub(super) struct Lexer<R> {
 impl<R: BufRead> Lexer<R> {
     pub(super) fn new(input: R) -> Self {
         let (word, macros) = (Vec::new(), Vec::new());
-        Self { input, word, line: 1, at_start: true, in_directive: false, macros }
+        Self { input, word, line: 1, at_start: true, is_first: false, in_directive: false, macros }
     }
 
     /// The next token, behind directives.
     pub(super) fn next(&mut self) -> io::Result<Token> {
         loop {
-            let at_start = self.at_start;
             match self.raw()? {
-                Token::Mark(b'#') if at_start && self.at_start_of_directive() => self.directive()?,
+                Token::Mark(b'#') if self.is_first => self.directive()?,
                 token => return Ok(token),
             }
         }
-    }
-
-    fn at_start_of_directive(&self) -> bool {
-        !self.in_directive
     }
 
     /// Reads up to the end of the line, and notes macros that are numbers.
@@ -99,7 +96,7 @@ impl<R: BufRead> Lexer<R> {
                 b'\\' => self.continuation()?,
                 b'/' if self.comment()? => {}
                 _ => {
-                    self.at_start = false;
+                    self.is_first = std::mem::take(&mut self.at_start);
                     return self.begun(byte);
                 }
             }

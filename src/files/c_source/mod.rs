@@ -290,6 +290,10 @@ mod tests {
             let found = (array.name.as_str(), array.descr.as_str(), array.dtype);
             assert_eq!(found, ("a", descr, dtype.and_then(Dtype::named)), "{declaration}");
         }
+        // Behind other lines, and no directive within one.
+        let text = "int b;\n  #define FSOT_A_SPP 5 \\\n\nint a[] /* #define FSOT_A_DIMS 7 */ = {1};\n\
+                    x # define FSOT_A_WIDTH 7\n";
+        assert_eq!(all(text, None).unwrap().macros, [("_SPP", 5)]);
         let text = "#define FSOT_A_FRAMES 3\n# define FSOT_A_LEVELS 256u // so many\n#define FSOT_B_SPP (2)\n\
                     #define OTHER_DIMS 7\n#define FSOT_A_FRAMES 4\nint a[] = {1};\n";
         assert_eq!(all(text, None).unwrap().macros, [("_FRAMES", 3), ("_LEVELS", 256)]);

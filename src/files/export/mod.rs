@@ -22,7 +22,7 @@ use std::fmt;
 use std::io::{self, Seek, Write};
 use std::path::{Path, PathBuf};
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use self::encode::Encoded;
 pub use self::options::{Depth, ExportOptions, Format, Rounding};
@@ -41,11 +41,22 @@ use crate::table::extent::Extent;
 #[non_exhaustive]
 pub struct Exported {
     /// The files, without the record.
+    #[serde(serialize_with = "texts")]
     pub files: Vec<PathBuf>,
     /// The record beside them.
+    #[serde(serialize_with = "text")]
     pub record_path: PathBuf,
     /// What the record says.
     pub record: ExportRecord,
+}
+
+/// Paths that are no UTF-8 are shown as well as can be.
+fn text<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(&path.display())
+}
+
+fn texts<S: Serializer>(paths: &[PathBuf], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(paths.iter().map(|path| path.display().to_string()))
 }
 
 impl ExportOptions {

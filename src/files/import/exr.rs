@@ -6,6 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use exr::error::Error;
 use exr::image::FlatSamples;
 use exr::meta::MetaData;
+use exr::meta::header::Header;
 use exr::prelude::{ReadChannels, ReadLayers, read as reader};
 
 use super::Problem;
@@ -30,8 +31,9 @@ pub(super) fn read(mut file: impl BufRead + Seek, length: u64) -> Result<Source,
         all.all_attributes().non_parallel().from_buffered(file)
     })?
     .layer_data;
-    let [width, height] = [layers[0].size.width(), layers[0].size.height()];
-    let channels = layers[0].channel_data.list.len();
+    let Some(first) = layers.first() else { return Err(damaged("it has no layers").into()) };
+    let ([width, height], channels) =
+        ([first.size.width(), first.size.height()], first.channel_data.list.len());
     let mut values = reserved(layers.len() * width * height * channels)?;
     let mut dtype = "<f2";
     for layer in &layers {
@@ -85,16 +87,18 @@ fn check(meta: &MetaData, length: u64) -> Result<(), ImportError> {
     if blocks.saturating_mul(LEAST_BLOCK) > length {
         return Err(damaged("it is too short for its blocks"));
     }
-    let first = &meta.headers[0];
-    let channels = |at: usize| meta.headers[at].channels.list.iter().map(|channel| &channel.name);
-    for (at, header) in meta.headers.iter().enumerate() {
+    let Some(first) = meta.headers.first() else { return Err(damaged("it has no layers")) };
+    let channels = |header: &Header| -> Vec<String> {
+        header.channels.list.iter().map(|channel| channel.name.to_string()).collect()
+    };
+    for header in &meta.headers {
         if header.deep {
             return Err(refused("is of deep samples"));
         }
         if header.channels.list.iter().any(|channel| channel.sampling.0 != 1 || channel.sampling.1 != 1) {
             return Err(refused("has channels with fewer samples than pixels"));
         }
-        if header.layer_size != first.layer_size || !channels(at).eq(channels(0)) {
+        if header.layer_size != first.layer_size || channels(header) != channels(first) {
             return Err(refused("has layers of several kinds"));
         }
         // The crate asks for all of it, and multiplies without looking.

@@ -149,8 +149,10 @@ impl From<Unread> for Problem {
 
 impl SampleTable {
     /// Makes a table of somebody else's file: a `.npy` array of floats or integers of any size, byte order
-    /// and memory order, or text with numbers between blanks, commas or semicolons, one sample or one row of
-    /// a picture a line, such as the `.dat` files of published codes.
+    /// and memory order; a PNG, KTX 2 or EXR texture; text with numbers between blanks, commas or semicolons,
+    /// one sample or one row of a picture a line, such as the `.dat` files of published codes; an array in C
+    /// or C++; bare numbers, of which options or a text beside them say what they are. What
+    /// [`export`](Self::export) has written is read by its record, unless options say otherwise.
     ///
     /// Values are rounded to the nearest `f32`, but never to 1. Time and memory are linear in the file: 8
     /// bytes a value beside the table.

@@ -24,13 +24,10 @@ pub(super) struct Described {
     fortran: bool,
 }
 
-/// What options say; `None` if they say no type.
-pub(super) fn by_options(path: &Path, options: &ImportOptions) -> Result<Option<Described>, ImportError> {
-    let Some(dtype) = options.dtype else { return Ok(None) };
-    Ok(Some(match by_text(path, options)? {
-        Some(described) => Described { dtype, ..described },
-        None => Described { dtype, shape: None, axes: Vec::new(), levels: None, fortran: false },
-    }))
+/// What options say, whatever is said by a text; `None` if they say no type.
+pub(super) fn by_options(options: &ImportOptions) -> Option<Described> {
+    let described = |dtype| Described { dtype, shape: None, axes: Vec::new(), levels: None, fortran: false };
+    options.dtype.map(described)
 }
 
 /// What the text beside a file says; `None` if it says no type.

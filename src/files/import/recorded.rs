@@ -23,6 +23,9 @@ const KIND: &str = "fsot export ";
 
 /// Imports all files of the record that lies beside this path, or there itself; `None` if there is none, or
 /// if options say how to read the file.
+///
+/// The record is that of the last export to this path. A file there that it does not list is of an earlier
+/// one.
 pub(super) fn import(path: &Path, options: &ImportOptions) -> Option<Result<Imported, TableError>> {
     if *options != ImportOptions::default() {
         return None;
@@ -30,13 +33,6 @@ pub(super) fn import(path: &Path, options: &ImportOptions) -> Option<Result<Impo
     let is_record = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
     let place = if is_record { path.to_owned() } else { ExportRecord::path_beside(path) };
     let record = read(&place)?;
-    let named = path.file_name().map(|name| name.to_string_lossy());
-    // A file beside those of the record has only its name from them.
-    let is_listed =
-        |record: &ExportRecord| record.files.iter().any(|file| Some(&*file.name) == named.as_deref());
-    if record.as_ref().is_ok_and(|record| !is_record && path.exists() && !is_listed(record)) {
-        return None;
-    }
     Some(record.and_then(|record| all(&place, &record)))
 }
 
@@ -88,6 +84,11 @@ fn all(place: &Path, record: &ExportRecord) -> Result<Imported, TableError> {
     let pieces: Option<Vec<Piece>> = record.files.iter().map(|file| piece(place, record, file)).collect();
     let pieces =
         pieces.ok_or_else(|| refuse("names a file in another folder, or more than its shape has"))?;
+    let mut names: Vec<&str> = record.files.iter().map(|file| file.name.as_str()).collect();
+    names.sort_unstable();
+    if names.windows(2).any(|pair| pair[0] == pair[1]) {
+        return Err(refuse("names a file twice"));
+    }
     let held = |piece: &Piece| (piece.frames.len() * piece.samples.len() * piece.dims.len()) as u64;
     let total = pieces.iter().map(held).fold(0, u64::saturating_add);
     if total != (frames * spp * dims) as u64 {
@@ -149,15 +150,16 @@ fn several(
     extent: Extent,
     refuse: impl Fn(&str) -> TableError,
 ) -> Result<Imported, TableError> {
+    // All of them before there is a table, whose size is but a word of the record.
+    let read = |piece: &Piece| one(piece, record, extent);
+    let mut read: Vec<Imported> = pieces.iter().map(read).collect::<Result<_, _>>()?;
     let dims = record.shape[4];
     let count = extent.samples() * dims;
     let mut values = Vec::new();
     let no_memory = |error| TableError::Io { verb: "read", path: place.into(), source: error };
     values.try_reserve_exact(count).map_err(|error| no_memory(error.into()))?;
     values.resize(count, f32::NAN);
-    let mut last = None;
-    for piece in pieces {
-        let imported = one(piece, record, extent)?;
+    for (piece, imported) in pieces.iter().zip(&read) {
         let mut read = imported.table.values().iter();
         for frame in piece.frames.clone() {
             for site in frame * extent.height * extent.width..(frame + 1) * extent.height * extent.width {
@@ -168,10 +170,9 @@ fn several(
                 }
             }
         }
-        last = Some(imported);
     }
     // Numbers that were read are none, so that a part without a file is one that another has twice.
-    let Some(imported) = last.filter(|_| !values.iter().any(|value| value.is_nan())) else {
+    let Some(imported) = read.pop().filter(|_| !values.iter().any(|value| value.is_nan())) else {
         return Err(refuse("holds a part of the table twice, or not at all"));
     };
     Ok(Imported { table: SampleTable::trusted(extent, dims, values), ..imported })

@@ -105,7 +105,7 @@ impl Source {
 /// Reads all numbers of a file.
 pub(super) fn read(path: &Path, options: &ImportOptions) -> Result<Source, Problem> {
     let (mut file, bytes) = header::open(path)?;
-    let mut source = match (raw::by_options(path, options)?, picture(&mut file, bytes)?) {
+    let mut source = match (raw::by_options(options), picture(&mut file, bytes)?) {
         (Some(described), _) => raw::read(file, bytes, described)?,
         (None, Some(picture)) => picture,
         (None, None) => match header::read(&mut file, bytes) {
