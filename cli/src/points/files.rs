@@ -23,8 +23,8 @@ pub struct Files {
     /// and the same columns; how they were made goes beside it, as NAME.points.json.
     #[arg(long, value_name = "NPY|CSV")]
     points: Option<PathBuf>,
-    /// Where to write how the run goes, as .csv, while it goes (of several runs the first): step, seconds, step
-    /// size, displacement, and now and then the loss.
+    /// Where to write how the run goes, as .csv, while it goes (of several runs the first): step, seconds,
+    /// step size, displacement, and now and then the loss.
     #[arg(long, value_name = "CSV")]
     log: Option<PathBuf>,
 }
