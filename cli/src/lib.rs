@@ -25,8 +25,8 @@
 //! # Shared with other programs
 //!
 //! [`interrupt`] for signals, [`output`] for files that are checked before the work, [`progress`] for bars,
-//! [`console`] for what is printed, [`run`] for a run with all of them, [`draw`] for pictures, [`temporal`] for
-//! kernels as they are written on a command line.
+//! [`console`] for what is printed, [`run`] for a run with all of them, [`log`] for what is written of it,
+//! [`draw`] for pictures, [`temporal`] for kernels as they are written on a command line.
 
 use std::process::ExitCode;
 

@@ -45,8 +45,8 @@ const LAWS: usize = 1 << 21;
 const THREAD: usize = 1 << 19;
 
 impl Optimizer {
-    /// What a run until `until` will take. The table, the moments of the descent and the numbers of steps stay
-    /// as they are; a few steps that move nothing are timed.
+    /// What a run until `until` will take. The table, the moments of the descent and the numbers of steps
+    /// stay as they are; a few steps that move nothing are timed.
     ///
     /// Takes less than half a second, or some steps where one takes longer. [`Until::Converged`] is planned
     /// for its whole length.

@@ -18,6 +18,7 @@ use super::picture::{Reading, refusal};
 use super::set::PointSet;
 use crate::console;
 use crate::interrupt::Interrupt;
+use crate::log::Log;
 use crate::progress::Progress;
 use crate::{Ended, Failure, Shared};
 
@@ -66,7 +67,7 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
     let inks = Inks::open_with(picture, &reading.options()).map_err(refusal)?;
     let config = Config::color_stippling(*count, &inks).with_seed(*seed);
     let sets = config.terms.len();
-    let made = make(config, *slices, &Progress::new(shared))?;
+    let made = make(config, *slices, &Progress::new(shared), places.log())?;
     let labels = (0..).zip(inks.counts(*count)).flat_map(|(ink, count)| vec![ink; count]).collect();
     let set = PointSet::new(made.table, labels);
     let flags = json!({
@@ -85,6 +86,7 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
         let radius = (0.5 * ((size[0] * size[1]) as f64 / *count as f64).sqrt()).clamp(1.0, 6.0);
         sheet(size, radius, set.iter().map(|(dot, ink)| (dot, INKS[ink as usize % INKS.len()])))
     })?;
+    made.log.map_or(Ok(()), Log::end)?;
 
     let measure = move || InkLikenesses::measure(&set, &inks, sets);
     let figures = Interrupt::listen()?.unless_it_comes(measure).transpose()?;

@@ -23,6 +23,10 @@ pub struct Files {
     /// and the same columns; how they were made goes beside it, as NAME.points.json.
     #[arg(long, value_name = "NPY|CSV")]
     points: Option<PathBuf>,
+    /// Where to write how the run goes, as .csv, while it goes (of several runs the first): step, seconds,
+    /// step size, displacement, and now and then the loss.
+    #[arg(long, value_name = "CSV")]
+    log: Option<PathBuf>,
 }
 
 /// Files that can be written.
@@ -30,6 +34,7 @@ pub struct Files {
 pub struct Places {
     picture: Option<PathBuf>,
     points: Option<PathBuf>,
+    log: Option<PathBuf>,
 }
 
 /// How points were made, for the file beside them.
@@ -53,7 +58,8 @@ impl Files {
     /// Refuses, before the work, what could not be written after it.
     pub fn check(&self, default: &str, inputs: &[&Path]) -> Result<Places, Failure> {
         let default = self.points.is_none().then(|| PathBuf::from(default));
-        let places = Places { picture: self.out.clone().or(default), points: self.points.clone() };
+        let (picture, points) = (self.out.clone().or(default), self.points.clone());
+        let places = Places { picture, points, log: self.log.clone() };
         let beside = places.record();
         let mut outputs = Vec::new();
         outputs.extend(places.picture.as_deref().map(|path| Output {
@@ -67,6 +73,7 @@ impl Files {
             endings: &["npy", "csv"],
         }));
         outputs.extend(beside.as_deref().map(|path| Output { flag: "--points", path, endings: &["json"] }));
+        outputs.extend(places.log().map(|path| Output { flag: "--log", path, endings: &["csv"] }));
         output::check(&outputs, inputs)?;
         Ok(places)
     }
@@ -75,6 +82,11 @@ impl Files {
 impl Places {
     fn record(&self) -> Option<PathBuf> {
         self.points.as_ref().map(|path| path.with_extension("points.json"))
+    }
+
+    /// Where the log goes.
+    pub fn log(&self) -> Option<&Path> {
+        self.log.as_deref()
     }
 
     /// Writes all that was asked for.

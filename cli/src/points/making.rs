@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::time::Instant;
 
 use fsot::files::RunRecord;
@@ -10,6 +11,7 @@ use serde::Serialize;
 
 use super::files::Places;
 use crate::console::{self, Console};
+use crate::log::Log;
 use crate::progress::Progress;
 use crate::{Ended, Failure, Shared, advice, run};
 
@@ -17,6 +19,8 @@ use crate::{Ended, Failure, Shared, advice, run};
 pub struct Made {
     pub table: SampleTable,
     pub work: Work,
+    /// To be ended when all else is written.
+    pub log: Option<Log>,
 }
 
 /// How much work that was.
@@ -42,7 +46,7 @@ impl Work {
 }
 
 /// Optimises points by so many slices per class, or until a signal comes.
-pub fn make(config: Config, slices: u64, progress: &Progress) -> Result<Made, Failure> {
+pub fn make(config: Config, slices: u64, progress: &Progress, log: Option<&Path>) -> Result<Made, Failure> {
     let begin = Instant::now();
     let advised = |failure| advice::with_flags(failure, advice::of_points);
     // A signal ends this as it ends any process: there is nothing to keep yet.
@@ -54,9 +58,16 @@ pub fn make(config: Config, slices: u64, progress: &Progress) -> Result<Made, Fa
     progress.end_planning();
     let planning_seconds = begin.elapsed().as_secs_f64();
     let until = Until::SlicesPerClass(slices);
-    let report = run::observed(&mut optimizer, until, progress).map_err(advised)?;
+    let mut log = log.map(|path| Log::new(path, optimizer.config())).transpose()?;
+    let report = run::watched(&mut optimizer, until, progress, |step| {
+        log.iter_mut().for_each(|log| log.step(step));
+        ControlFlow::Continue(())
+    });
+    let report = report.map_err(advised)?;
     let work = Work { planning_seconds, run: RunRecord::from(&report) };
-    Ok(Made { table: optimizer.into_table(), work })
+    let table = optimizer.into_table();
+    log.iter_mut().for_each(|log| log.finish(&report, &table));
+    Ok(Made { table, work, log })
 }
 
 /// What is measured of points, in words and as JSON.

@@ -14,6 +14,7 @@ use super::making::{Figures, Work, make, tell};
 use super::page::{BLACK, squares};
 use super::set::PointSet;
 use crate::interrupt::Interrupt;
+use crate::log::Log;
 use crate::progress::Progress;
 use crate::{Ended, Failure, Shared};
 
@@ -75,6 +76,7 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
     let mut work = Work::default();
     let mut sequences: Vec<SampleTable> = Vec::new();
     let mut set = PointSet::default();
+    let mut log = None;
     for seed in 0..*seeds {
         let lengths = match prefixes {
             Prefixes::Powers => PrefixLengths::PowersOfTwo,
@@ -83,7 +85,9 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
         if *seeds > 1 {
             progress.begin(&format!("seed {seed} of {seeds}"));
         }
-        let made = make(Config::progressive(*count, 2, lengths).with_seed(seed.into()), *slices, &progress)?;
+        let config = Config::progressive(*count, 2, lengths).with_seed(seed.into());
+        let made = make(config, *slices, &progress, places.log().filter(|_| seed == 0))?;
+        log = log.or(made.log);
         set.append(made.table.clone(), seed);
         sequences.push(made.table);
         work = work.and(made.work);
@@ -109,6 +113,7 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
         };
         squares(SIDE, [64, 16, 4, 1].into_iter().map(panel).collect())
     })?;
+    log.map_or(Ok(()), Log::end)?;
 
     let (count, integrands) = (*count, *integrands as usize);
     let measure = move || PrefixErrors::measure(&sequences, count, integrands);

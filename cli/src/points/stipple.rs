@@ -15,6 +15,7 @@ use super::page::{BLACK, LONGER_SIDE, sheet, sheet_size};
 use super::picture::{Reading, refusal};
 use super::set::PointSet;
 use crate::interrupt::Interrupt;
+use crate::log::Log;
 use crate::progress::Progress;
 use crate::{Ended, Failure, Shared};
 
@@ -65,7 +66,7 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
     let tone = if *bright { Tone::Bright } else { Tone::Dark };
     let density = Density::open_with(picture, tone, &reading.options()).map_err(refusal)?;
     let config = Config::stippling(*count, density.clone()).with_seed(*seed);
-    let made = make(config, *slices, &Progress::new(shared))?;
+    let made = make(config, *slices, &Progress::new(shared), places.log())?;
     let set = PointSet::new(made.table, vec![0; *count]);
     let flags = json!({
         "picture": picture.display().to_string(),
@@ -80,6 +81,7 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
         let radius = (0.3 * blur(*count, &density) * LONGER_SIDE as f64 / 2.0).clamp(0.8, 6.0);
         sheet(sheet_size(density.size()), radius, set.iter().map(|(dot, _)| (dot, BLACK)))
     })?;
+    made.log.map_or(Ok(()), Log::end)?;
 
     let measure = move || Likeness::measure(&set.with_labels(&[0]), &density);
     let figures = Interrupt::listen()?.unless_it_comes(measure).transpose()?;

@@ -18,6 +18,7 @@ use super::page::squares;
 use super::set::PointSet;
 use crate::console;
 use crate::interrupt::Interrupt;
+use crate::log::Log;
 use crate::progress::Progress;
 use crate::{Ended, Failure, Shared};
 
@@ -87,7 +88,7 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
         return Err("there are no classes: give --counts of at least one number".into());
     };
     let progress = Progress::new(shared);
-    let made = make(config, *slices, &progress)?;
+    let made = make(config, *slices, &progress, places.log())?;
     let set = PointSet::new(made.table, labels.to_vec());
     let record = Record {
         kind: "two-class",
@@ -104,6 +105,7 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
         };
         squares(SIDE, (0..=counts.len()).map(panel).collect())
     })?;
+    made.log.map_or(Ok(()), Log::end)?;
 
     let points = set.count();
     let (slices, seed, compared) = (*slices, *seed, !no_comparison);
@@ -151,7 +153,7 @@ impl Distances {
                 (None, Some((slices, seed))) => {
                     let single = Config::classes(&[points], 2, &LabelSubsets::Every);
                     progress.begin(&format!("{} alone", console::points(points)));
-                    let single = make(single.with_seed(seed.wrapping_add(1)), slices, progress)?;
+                    let single = make(single.with_seed(seed.wrapping_add(1)), slices, progress, None)?;
                     let best = distance_to_uniform(single.table.values())?;
                     alone.insert(points, best);
                     Some(best)

@@ -14,7 +14,8 @@ impl Recipe {
     /// What makes this very configuration, and the same work again.
     ///
     /// What is as usual is left unsaid, so that it follows what flags change: a still that becomes an
-    /// animation gets the temporal kernel of animations. Terms that are others than the usual ones are listed.
+    /// animation gets the temporal kernel of animations. Terms that are others than the usual ones are
+    /// listed.
     pub fn of_config(config: Config, run: Option<RunRecord>) -> Self {
         let literal = Self::of_parts(&config);
         let usual = literal.clone().with_usual_terms(&config);

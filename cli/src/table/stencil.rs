@@ -23,6 +23,9 @@ pub struct Stencil {
     pub over_time: bool,
 }
 
+/// An array that was read; `None` if its numbers are of another type.
+type Attempt = Option<Result<ArrayD<f64>, String>>;
+
 /// More bytes hold more weights than a tile has pixels.
 const MOST_BYTES: u64 = 1 << 28;
 
@@ -48,7 +51,7 @@ impl Stencil {
             return Err("may be anything: give a file name that ends in .npy or .csv".into());
         }
         let open = || File::open(path).map(BufReader::new).map_err(|error| format!("{error}; {ADVICE}"));
-        let readers: [fn(BufReader<File>) -> Option<Result<ArrayD<f64>, String>>; 10] = [
+        let readers: [fn(BufReader<File>) -> Attempt; 10] = [
             read::<f64>,
             read::<f32>,
             read::<u8>,
@@ -183,21 +186,16 @@ impl Stencil {
 }
 
 /// The array, if its numbers are of this type.
-fn read<T: ReadableElement + Into<f64> + Copy>(file: BufReader<File>) -> Option<Result<ArrayD<f64>, String>> {
+fn read<T: ReadableElement + Into<f64> + Copy>(file: BufReader<File>) -> Attempt {
     of_type(file, |value: T| value.into())
 }
 
 /// The same for those that round.
-fn read_wide<T: ReadableElement + TryInto<i128> + Copy>(
-    file: BufReader<File>,
-) -> Option<Result<ArrayD<f64>, String>> {
+fn read_wide<T: ReadableElement + TryInto<i128> + Copy>(file: BufReader<File>) -> Attempt {
     of_type(file, |value: T| value.try_into().map_or(f64::NAN, |value: i128| value as f64))
 }
 
-fn of_type<T: ReadableElement + Copy>(
-    file: BufReader<File>,
-    number: impl Fn(T) -> f64,
-) -> Option<Result<ArrayD<f64>, String>> {
+fn of_type<T: ReadableElement + Copy>(file: BufReader<File>, number: impl Fn(T) -> f64) -> Attempt {
     match ArrayD::<T>::read_npy(file) {
         Ok(array) => Some(Ok(array.mapv(number))),
         Err(ReadNpyError::WrongDescriptor(_)) => None,

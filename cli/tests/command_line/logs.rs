@@ -95,16 +95,15 @@ fn a_run_that_is_refused_leaves_no_log() {
 fn a_full_disk_costs_the_log_alone() {
     let home = tempdir().unwrap();
     let program = env!("CARGO_BIN_EXE_fsot");
-    let table = "table --width 2 --height 2 --frames 1 --slices-per-class 200000 --no-bound --threads 1";
-    // 2 KiB hold the table and its metadata or some thirty rows; without the trap the system would kill the
-    // process.
-    let line = format!("trap '' XFSZ; ulimit -f 8; exec {program} {table} --quiet --log run.csv");
+    let table = "table --width 2 --height 2 --frames 1 --slices-per-class 5000000 --no-bound --threads 1";
+    // 6 KiB hold the table and its metadata, or a hundred rows, which are those of a second and a half.
+    // Without the trap the system would kill the process.
+    let line = format!("trap '' XFSZ; ulimit -f 12; exec {program} {table} --quiet --log run.csv");
     let output =
         std::process::Command::new("sh").args(["-c", &line]).current_dir(home.path()).output().unwrap();
     let (_, err) = texts(&output);
-    if output.status.code() == Some(1) {
-        assert!(err.contains("cannot write run.csv") && err.contains("all else is written"), "{err}");
-    }
+    assert_eq!(output.status.code(), Some(1), "{err}");
+    assert!(err.contains("cannot write run.csv") && err.contains("all else is written"), "{err}");
     assert!(fsot::SampleTable::load_with(home.path().join("table.npy")).is_ok(), "{err}");
 }
 
@@ -120,9 +119,7 @@ fn logs_are_drawn_side_by_side() {
     for text in ["slices.csv", "sweeps.csv", "filtered error / white noise", "displacement"] {
         assert!(svg.contains(text), "{text}");
     }
-    for line in svg.lines().filter(|line| line.contains("NaN") || line.contains("inf")) {
-        panic!("{line}");
-    }
+    assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
     let (out, _) = run(home.path(), "plot slices.csv --json --out one.svg");
     let line: serde_json::Value = serde_json::from_str(&out).unwrap();
     assert_eq!(line["out"], "one.svg");
@@ -142,4 +139,23 @@ fn logs_are_drawn_side_by_side() {
         assert!(err.contains(words) && err.lines().count() == 1, "{files}: {err}");
     }
     assert!(!home.path().join("curves.png").exists());
+}
+
+/// Of a point set there is no filter, but a loss.
+#[test]
+fn point_sets_are_logged() {
+    let home = tempdir().unwrap();
+    for verb in
+        ["two-class --counts 64,64 --no-comparison", "progressive --count 64 --integrands 2 --seeds 2"]
+    {
+        let verb = format!("points {verb} --slices 2000");
+        run(home.path(), &format!("{verb} --points plain.csv"));
+        run(home.path(), &format!("{verb} --points logged.csv --log run.csv"));
+        let bytes = |name: &str| fs::read(home.path().join(name)).unwrap();
+        assert!(bytes("plain.csv") == bytes("logged.csv"), "{verb}");
+        let rows = rows(&home.path().join("run.csv"));
+        assert!(rows.len() >= 3 && rows.iter().all(|row| row[6].is_nan()), "{verb}: {rows:?}");
+        run(home.path(), "plot run.csv");
+    }
+    assert!(names(home.path()).contains(&"curves.svg".to_owned()));
 }
