@@ -57,7 +57,7 @@ impl GroupFigures {
             true => Some(Discrepancy::measure(table, &dims)?.ratio_to_white_noise),
             false => None,
         };
-        let spectra = spectra(table, &dims, &integrands, effort)?;
+        let spectra = spectra(table, &dims, &random(effort.of_spectra)?, effort)?;
         let low = Some(spectra.low_frequency_share(LOW)).filter(|low| low.is_finite());
         Ok(Self {
             animated: extent.frames > 1,

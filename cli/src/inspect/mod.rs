@@ -94,6 +94,8 @@ pub(crate) struct Effort {
     pub integrands: usize,
     /// The same for biases, which take all samples whatever else does.
     pub of_bias: usize,
+    /// The same for spectra, whose speckle goes away by slabs, not by integrands.
+    pub of_spectra: usize,
     /// Frames whose filtered errors are averaged; all if `None`.
     pub frames: Option<usize>,
     /// Frames of the spectrum in x and y, and rows of that in x and t.
@@ -158,6 +160,7 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
         effort: Effort {
             integrands,
             of_bias: integrands,
+            of_spectra: integrands,
             frames: None,
             slabs: [usize::MAX; 2],
             most_pairs: MOST_PAIRS,

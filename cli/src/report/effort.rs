@@ -20,13 +20,15 @@ const FEWEST: usize = 8;
 const FEW: usize = 2;
 
 /// Frames and rows over which spectra are averaged.
-const SLABS: [usize; 2] = [2, 8];
+const SLABS: [usize; 2] = [8, 32];
+/// Integrands per family of the spectra of animations, which have slabs.
+const OF_SLABS: usize = 32;
 
 /// Pairs of samples whose comparison takes about a second.
 const MOST_PAIRS: u64 = 1_000_000_000;
 
-/// Samples of a table whose bound is measured with its terms of balance. Of more, these are below a
-/// thousandth of it.
+/// Samples of a table whose bound is measured with its terms of balance. Of more, these are a few
+/// thousandths of it, less than its standard error.
 const MOST_BALANCED: usize = 1 << 16;
 
 /// As much as a page of this table can afford, or as was `asked` for. It depends on nothing else, so that a
@@ -49,11 +51,15 @@ pub fn of(
     let groups = DimensionGroup::pairs_and_whole(table.dims());
     let of_pixels = groups.iter().map(|group| families * per_pixel(group.dims.len())).sum::<usize>();
     let affordable = |frames: usize| AFFORDABLE / (frames * height * width).saturating_mul(of_pixels).max(1);
+    let slabs = SLABS[0].min(frames) + frames * SLABS[1].min(height) / height;
     let usual = |frames: usize| affordable(frames).clamp(FEWEST, USUAL);
+    // Of a still, error and spectrum see the same frame.
+    let still = usize::from(frames == 1);
+    let integrands = asked.unwrap_or_else(|| usual(filtered + still));
+    let most_of_spectra = if frames == 1 { USUAL } else { usual(slabs).min(OF_SLABS) };
     Ok(Effort {
-        integrands: asked.unwrap_or_else(|| {
-            usual(filtered + SLABS[0].min(frames) + frames * SLABS[1].min(height) / height)
-        }),
+        integrands,
+        of_spectra: integrands.min(most_of_spectra),
         of_bias: asked.unwrap_or(USUAL).min(usual(frames)),
         frames: some,
         slabs: SLABS,

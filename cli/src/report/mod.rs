@@ -168,7 +168,7 @@ fn white_noise(table: &SampleTable, arguments: &Arguments) -> Result<Panels, Fai
     let dims: Vec<usize> = (0..table.dims().min(2)).collect();
     let kernel = arguments.yardstick.kernel(extent.frames);
     let effort = arguments.effort(&white, &kernel)?;
-    let integrands = Integrands::random(dims.len(), effort.integrands, seed)?;
+    let integrands = Integrands::random(dims.len(), effort.of_spectra, seed)?;
     let spectra = measured::spectra(&white, &dims, &integrands, &effort)?;
     Panels::new(&white, &dims, &kernel, seed, &spectra)
 }

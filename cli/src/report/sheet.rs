@@ -3,15 +3,15 @@
 use super::Report;
 use super::panels::{Dots, Panels};
 use crate::draw::page::Page;
-use crate::draw::raster::{Color, Grey};
+use crate::draw::raster::Grey;
 
 /// Pixels of a cell's side.
 const SIDE: usize = 256;
 const GAP: usize = 12;
-const INK: [u8; 3] = [20, 20, 24];
+const INK: [u8; 3] = [20; 3];
 
 /// The sheet.
-pub fn picture(report: &Report) -> Color {
+pub fn picture(report: &Report) -> Grey {
     let rows: Vec<&Panels> =
         std::iter::once(&report.white).chain(report.columns.iter().map(|column| &column.panels)).collect();
     let is_animated = rows.iter().any(|panels| panels.xt.is_some());
@@ -28,7 +28,9 @@ pub fn picture(report: &Report) -> Color {
             grey(&mut page, [at(3 + column), at(row)], picture);
         }
     }
-    page.picture
+    // Paper, ink and frames are grey as well.
+    let [width, height] = [page.picture.width(), page.picture.height()];
+    Grey::from_fn(width, height, |x, y| [page.picture.pixels()[y * width + x][0]])
 }
 
 /// In the middle of its cell, enlarged by a whole number.
