@@ -55,14 +55,17 @@
 //!
 //! # Features
 //!
-//! * `image` (default): densities from PNG and EXR files. Without it `targets::Picture` is absent, and the
-//!   crates `png`, `exr` and `moxcms`.
+//! * `image` (default): densities from PNG and EXR files, and tables to and from them. Without it
+//!   `targets::Picture` is absent, the formats `Atlas`, `Slices`, `Exr` and `ExrLayers` of [`files::Format`],
+//!   and the crates `png`, `exr` and `moxcms`.
 //!
 //! # What it promises
 //!
 //! * The same seed gives the same bits at any thread count, on the AVX-512, AVX2 and baseline paths alike.
 //!   Across platforms sines, cosines and powers of the standard library may round differently in the last
 //!   bit, and a run amplifies that; tables then differ, their quality doesn't.
+//! * A run that is resumed from a [`Checkpoint`](optimizer::Checkpoint), wherever it was killed, ends with
+//!   the same bits as one that was left alone.
 //! * Values lie in `[0, 1)`; 1.0 never appears.
 //! * Steps allocate nothing once their buffers have grown; memory stays below eleven times the table (twelve
 //!   with SGD, thirteen with Adam; nine in sweeps), plus a few MiB per thread. Slices keep 4 bytes per pixel

@@ -104,6 +104,39 @@ fn memory_follows_its_law() {
     }
 }
 
+/// What a plan says of memory is near what a run holds, with some room: a dry run is for those who wonder.
+#[test]
+fn plans_foresee_memory() {
+    let still = |side| Extent { frames: 1, height: side, width: side, spp: 1 };
+    let long = Extent { frames: 32, height: 64, width: 64, spp: 1 };
+    let mut far = Vec::new();
+    for (extent, dims, slices_per_class, sweeps) in [
+        (still(640), 2, 2, 0),
+        (still(640), 2, 0, 1),
+        (still(512), 1, 2, 1),
+        (still(64), 2, 4, 1),
+        (still(256).with_spp(4), 4, 1, 1),
+        (long, 2, 2, 0),
+        (long, 2, 0, 1),
+    ] {
+        let until = Until::Work(Work { slices_per_class, sweeps, ..Work::default() });
+        let (planned, peak) = one_thread().install(|| {
+            let planned = Optimizer::new(Config::new(extent, dims)).unwrap().plan(until).unwrap().bytes;
+            let run = || _ = Optimizer::new(Config::new(extent, dims)).unwrap().run(until).unwrap();
+            (planned, measure(run).bytes_max)
+        });
+        let case = format!("{extent:?}, {dims} dimensions, {slices_per_class} slices, {sweeps} sweeps");
+        let ratio = planned as f64 / peak as f64;
+        println!("{case}: {ratio:.2} of {peak} bytes");
+        // Buffers that move while they grow are there twice for a moment; tabulated laws and what a thread
+        // needs are guessed.
+        if !(0.78 * peak as f64..1.25 * peak as f64 + 3e6).contains(&(planned as f64)) {
+            far.push(format!("{case}: {ratio:.2} of {peak} bytes"));
+        }
+    }
+    assert!(far.is_empty(), "{}", far.join("\n"));
+}
+
 /// Lists of the neighbours of scattered samples take sixteen tables at most, and tiles are made instead where
 /// they would take more (the last of these).
 #[test]

@@ -27,6 +27,10 @@ Examples:
       a file for each frame; {sample} and {dims} stand for what else tells files apart
   fsot import samples.dat --frames 10 --out table.npy
       one sample a line, in the order [frame, y, x, sample, dim]
+  fsot import bluenoise.cpp --out table.npy
+      an array in C or C++; --array says which, where there are several
+  fsot import noise.bin --dtype '<f4' --channels 4 --dims 2 --frames 64 --out table.npy
+      bare numbers, of which each pixel has four and two count
 
 What fsot export wrote is read by the .json beside it, unless lengths, axes or levels are given.
 Fractions are taken as they are; 1 becomes the largest number below. Whole numbers are ranks if each from 0 or
@@ -47,7 +51,11 @@ pub struct Arguments {
     out: PathBuf,
     /// The axes of the file, slowest first: some of frame, y, x, sample and dim [default: by their number and
     /// lengths, as is then said].
-    #[arg(long, value_delimiter = ',', conflicts_with_all = ["frames", "height", "width", "spp", "dims"])]
+    #[arg(
+        long,
+        value_delimiter = ',',
+        conflicts_with_all = ["frames", "height", "width", "spp", "dims", "channels"],
+    )]
     axes: Vec<Axis>,
     /// Levels of whole numbers [default: found, as above].
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]

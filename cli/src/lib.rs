@@ -3,10 +3,12 @@
 //! | verb | makes |
 //! |---|---|
 //! | [`table`] | a sample table, and its metadata |
-//! | [`inspect`] | figures and a page of pictures of a table |
+//! | [`inspect`] | figures of a table |
+//! | [`report`] | a page about one table or several, or a sheet of their pictures |
 //! | [`export`] | textures and other files that engines read |
 //! | [`import`] | a sample table of somebody else's file |
 //! | [`points`] | point sets: labelled classes, progressive sequences, stipplings |
+//! | [`plot`] | curves of the logs of runs |
 //!
 //! # Exit codes
 //!
@@ -17,21 +19,22 @@
 //! | 2 | the command line cannot be understood |
 //! | 3 | SIGINT, SIGTERM or SIGHUP ended the run early; what it had reached is written, and says so |
 //!
-//! A signal before the first step, or during `fsot inspect`, finds nothing to keep and kills the process as
+//! A signal before the first step, or during `fsot inspect` and `fsot report`, finds nothing to keep and kills the process as
 //! signals do (130, 143 and 129 to a shell). A reader of the output who goes away (`| head -1`) is no
 //! failure.
 //!
 //! # Shared with other programs
 //!
-//! [`interrupt`] for signals, [`output`] for files that are checked before the work, [`progress`] for bars,
-//! [`console`] for what is printed, [`run`] for a run with all of them, [`draw`] for pages, [`temporal`] for
-//! kernels as they are written on a command line.
+//! [`interrupt`] for signals, [`checkpoint`] for runs that may be killed, [`output`] for files that are
+//! checked before the work, [`progress`] for bars, [`console`] for what is printed, [`run`] for a run with
+//! all of them, [`draw`] for pictures, [`temporal`] for kernels as they are written on a command line.
 
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
 mod advice;
+pub mod checkpoint;
 pub mod console;
 pub mod draw;
 pub mod export;
@@ -39,9 +42,12 @@ mod flags;
 pub mod import;
 pub mod inspect;
 pub mod interrupt;
+pub mod log;
 pub mod output;
+pub mod plot;
 pub mod points;
 pub mod progress;
+pub mod report;
 pub mod run;
 pub mod table;
 pub mod temporal;
@@ -88,9 +94,11 @@ struct Command {
 enum Verb {
     Table(table::Arguments),
     Inspect(inspect::Arguments),
+    Report(report::Arguments),
     Export(export::Arguments),
     Import(import::Arguments),
     Points(points::Arguments),
+    Plot(plot::Arguments),
 }
 
 const TOUR: &str = "\
@@ -98,7 +106,9 @@ A tour:
   fsot table
       64 x 64 pixels and 10 frames in a second, to table.npy and table.json
   fsot inspect table.npy
-      what the table is worth: figures, and table.inspect.png to look at
+      what the table is worth, in figures
+  fsot report table.npy
+      the same to look at, in report.html; several tables stand side by side
   fsot table --frames 1 --spp 4 --dims 4 --seconds 10 --out render.npy
       a still table for a renderer that takes 4 samples of 4 numbers per pixel
   fsot export table.npy --to slices --out stbn.png
@@ -109,6 +119,8 @@ A tour:
       three sets of points; each of them, and all their unions, are uniform
   fsot points stipple --picture face.png --count 20000 --out dots.png
       a picture in dots
+  fsot table --config table.json --seed 8 --log run.csv
+      as that table was made but for the seed, with a log of how it went; fsot plot run.csv draws it
   fsot table --json --quiet
       one line of JSON for a script, and no progress bar; so does every verb
 'fsot VERB --help' says more about each.
@@ -124,9 +136,11 @@ pub fn main() -> ExitCode {
     let ended = match Command::parse().verb {
         Verb::Table(arguments) => table::run(&arguments),
         Verb::Inspect(arguments) => inspect::run(&arguments),
+        Verb::Report(arguments) => report::run(&arguments),
         Verb::Export(arguments) => export::run(&arguments),
         Verb::Import(arguments) => import::run(&arguments),
         Verb::Points(arguments) => points::run(&arguments),
+        Verb::Plot(arguments) => plot::run(&arguments),
     };
     match ended {
         Ok(ended) => ended.into(),

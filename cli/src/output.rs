@@ -8,6 +8,9 @@ use fsot::files::WholeFile;
 
 use crate::Failure;
 
+/// Any ending will do.
+pub const ANY: &[&str] = &[];
+
 /// A path and the flag that has named it.
 #[derive(Clone, Copy, Debug)]
 pub struct Output<'a> {
@@ -15,7 +18,7 @@ pub struct Output<'a> {
     pub flag: &'static str,
     /// The file.
     pub path: &'a Path,
-    /// Endings of its name that say what can be written.
+    /// Endings of its name that say what can be written; none if any will do.
     pub endings: &'static [&'static str],
 }
 
@@ -31,7 +34,7 @@ pub fn check(outputs: &[Output], inputs: &[&Path]) -> Result<(), Failure> {
     let mut places: Vec<PathBuf> = Vec::new();
     for &Output { flag, path, endings } in outputs {
         let name = path.display();
-        if !endings.iter().any(|ending| has_ending(path, ending)) {
+        if !endings.is_empty() && !endings.iter().any(|ending| has_ending(path, ending)) {
             let known: Vec<String> = endings.iter().map(|ending| format!(".{ending}")).collect();
             let known = known.join(" or ");
             return Err(format!("{flag} {name}: give a file name that ends in {known}").into());
@@ -73,7 +76,8 @@ pub fn has_ending(path: &Path, ending: &str) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(ending))
 }
 
-fn cannot_write(flag: &str, path: &Path, error: &io::Error) -> Failure {
+/// That a file cannot be written, in one sentence.
+pub(crate) fn cannot_write(flag: &str, path: &Path, error: &io::Error) -> Failure {
     format!("cannot write {}: {error}; choose another {flag}", path.display()).into()
 }
 

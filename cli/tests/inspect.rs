@@ -46,7 +46,7 @@ fn refusal(arguments: &[&str], words: &[&str]) {
 }
 
 #[test]
-fn awkward_shapes_have_figures_and_a_page() {
+fn awkward_shapes_have_figures() {
     let shapes = [
         ([1, 1, 1, 1], 1),
         ([1, 1, 1, 1], 16),
@@ -59,7 +59,7 @@ fn awkward_shapes_have_figures_and_a_page() {
         ([17, 4, 3, 2], 5),
     ];
     for (shape, dims) in shapes {
-        let (home, path) = table(shape, dims);
+        let (_home, path) = table(shape, dims);
         let text = figures(&path, &FEW);
         let groups = dims.div_ceil(2) + usize::from(dims > 2);
         assert_eq!(text.matches("filtered in space").count(), groups, "{shape:?} {dims}: {text}");
@@ -67,10 +67,6 @@ fn awkward_shapes_have_figures_and_a_page() {
         assert!(text.contains("metadata: none"), "{text}");
         assert!(text.contains(" of white noise\n"), "{text}");
         assert!(!text.contains("NaN") && !text.contains("inf "), "{shape:?} {dims}: {text}");
-        let page = image::open(home.path().join("table.inspect.png")).unwrap().into_luma8();
-        assert_eq!(page.width(), 1200);
-        let rows = if shape[0] > 1 { 5 } else { 4 };
-        assert!((rows * 400..rows * 600).contains(&page.height()), "{}", page.height());
     }
 }
 
@@ -139,9 +135,6 @@ fn bad_input_is_one_sentence() {
         refusal(&[path, &format!("--sigma={sigma}")], &["sigma_px"]);
     }
     refusal(&[path, "--temporal", "box:0"], &["box"]);
-    refusal(&[path, "--out", &inside("nowhere/page.png")], &["nowhere", "--out"]);
-    refusal(&[path, "--out", home.path().to_str().unwrap()], &[".png"]);
-    refusal(&[path, "--out", path], &[".png", "--out"]);
     assert_eq!(fs::read(path).unwrap(), whole);
     // What the command line itself refuses: several lines with a hint, code 2.
     for arguments in [&[path, "--temporal", "sometimes"][..], &[path, "--integrands", "0"], &[]] {

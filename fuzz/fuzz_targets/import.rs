@@ -1,4 +1,4 @@
-//! `SampleTable::import`, of arrays and of text; the first bytes choose options.
+//! `SampleTable::import`, of arrays, of text and of C; the first bytes choose options.
 
 #![no_main]
 
@@ -16,6 +16,9 @@ libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
         width: length(2),
         spp: length(3),
         dims: length(4),
+        channels: length(5),
+        dtype: ["u1", "<u2", ">f4", "<f8"][usize::from(axes & 3)].parse().ok().filter(|_| chosen >> 6 == 3),
+        array: (levels == 7).then(|| "a".into()),
     };
     let path = fsot_fuzz::file("array", bytes);
     for options in [ImportOptions::default(), options] {

@@ -20,6 +20,7 @@ use crate::table::extent::Extent;
 /// # let _ = classes;
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct LabelSet {
     /// The labels whose samples it holds.
     pub labels: Vec<u32>,

@@ -47,7 +47,7 @@ use crate::kernel::Kernel;
 /// # Ok::<(), fsot::ConfigError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 #[non_exhaustive]
 pub enum Classes {
     /// One class per pixel and frame: the kernel centred there.
@@ -55,6 +55,7 @@ pub enum Classes {
         /// The filter.
         kernel: Kernel,
         /// How its weights enter.
+        #[serde(default)]
         form: FilterForm,
     },
     /// One class: all samples alike. It is what makes a table unbiased.

@@ -63,6 +63,7 @@ pub enum PrefixLengths {
 /// # let _ = lengths;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct PrefixLength {
     /// Samples, from 1 to all.
     pub length: usize,

@@ -38,6 +38,9 @@ pub use crate::table::extent::MOST_DIMS;
 
 /// Everything that determines a table, but for the length of the run.
 ///
+/// It is written and read by serde, to the last bit; what is not known is refused, since a configuration of
+/// which a part is passed over makes another table.
+///
 /// ```
 /// use fsot::{Config, Extent, Kernel, Until};
 ///
@@ -47,6 +50,7 @@ pub use crate::table::extent::MOST_DIMS;
 /// # Ok::<(), fsot::ConfigError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub struct Config {
     /// Frames, height, width and samples per pixel.
@@ -61,13 +65,16 @@ pub struct Config {
     #[serde(default)]
     pub companions: bool,
     /// How slices are drawn.
+    #[serde(default)]
     pub slicing: Slicing,
     /// How steps of slices move the samples.
+    #[serde(default)]
     pub descent: Descent,
     /// How sweeps move them.
     #[serde(default)]
     pub sweeps: Sweeps,
     /// How far the terms in the role of [`Role::Balance`] move the samples towards their targets, over a run.
+    #[serde(default = "all_the_way")]
     pub balance: Schedule,
     /// Names every random number: the same seed gives the same bits.
     pub seed: u64,
@@ -92,7 +99,7 @@ impl Config {
             slicing: Slicing::default(),
             descent: Descent::default(),
             sweeps: Sweeps::default(),
-            balance: Schedule::constant(1.0),
+            balance: all_the_way(),
             seed: 0,
         };
         config.with_usual_terms(&[kernel], FilterForm::LevelSets, &groups)
@@ -241,6 +248,10 @@ impl Config {
             _ => None,
         })
     }
+}
+
+fn all_the_way() -> Schedule {
+    Schedule::constant(1.0)
 }
 
 fn default_kernel(extent: &Extent) -> Kernel {

@@ -26,6 +26,7 @@ use crate::error::RangeError;
 /// # let _ = config;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Sweeps {
     /// Step size of a run of sweeps alone. One of `n` sweeps begins no higher than at `√n`, and ends no lower
     /// than at its beginning divided by `n`: few sweeps can neither mend what large steps break nor settle.

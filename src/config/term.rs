@@ -23,10 +23,12 @@ use crate::targets::Target;
 /// assert_eq!(roles, [Role::Descend, Role::Balance, Role::Balance, Role::Balance, Role::Descend]);
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Term {
     /// The filters.
     pub classes: Classes,
     /// The measure that a filtered subset should resemble.
+    #[serde(default)]
     pub target: Target,
     /// The dimensions that this term sees, as a renderer consumes them together.
     pub dims: Vec<usize>,
@@ -34,9 +36,15 @@ pub struct Term {
     /// no term has classes per pixel, as in a point set, every class has its slices in each step, and their
     /// pull on a sample is proportional to it instead. From 1e-15 to 1e15; a run that is counted in slices
     /// asks for terms that are nearer to each other (see [`crate::ConfigError::Uneven`]).
+    #[serde(default = "one")]
     pub weight: f64,
     /// How its slices move the samples.
+    #[serde(default)]
     pub role: Role,
+}
+
+fn one() -> f64 {
+    1.0
 }
 
 /// How the slices of a term move the samples.
@@ -72,10 +80,12 @@ pub enum Role {
 /// assert_eq!(config.groups(), groups);
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct DimensionGroup {
     /// Dimensions of the table, each once.
     pub dims: Vec<usize>,
     /// Weight relative to the other groups; positive.
+    #[serde(default = "one")]
     pub weight: f64,
 }
 
@@ -236,6 +246,7 @@ fn concentration(kernel: &Kernel, extent: &Extent) -> Option<f64> {
 /// # let _ = config;
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Slicing {
     /// Directions per filtered subset, `1..=16`. Sixteen ride in the lanes of one vector; fewer cost the
     /// same.

@@ -1,6 +1,7 @@
 //! What a caller got wrong, with the values that show it, by owner. Every message ends in what to do about
 //! it.
 
+mod checkpoint;
 mod config;
 mod export;
 mod files;
@@ -13,6 +14,7 @@ mod shape;
 mod short;
 mod target;
 
+pub use self::checkpoint::CheckpointError;
 pub use self::config::{ClassError, ConfigError, TermError};
 pub use self::export::ExportError;
 pub use self::files::{FormatError, TableError};

@@ -76,9 +76,19 @@ impl Layout {
             Some(lengths) if options.axes.is_empty() && known.ends_with(&PICTURE) => {
                 Self::list(shape, of_picture(shape, lengths))?
             }
-            _ if options.axes.is_empty() && !known.is_empty() => Self::known(shape, known, options)?,
+            None if options.axes.is_empty() && !known.is_empty() => Self::named(shape, known)?,
             None if !options.axes.is_empty() => Self::named(shape, &options.axes)?,
             Some(_) if !options.axes.is_empty() => return Err(ImportError::AxesAndLengths),
+            // Five axes are those of a table, unless they have other lengths than are given.
+            Some(lengths)
+                if shape.len() == 5
+                    && lengths
+                        .iter()
+                        .zip(shape)
+                        .all(|(given, found)| given.is_none_or(|given| given == *found)) =>
+            {
+                Self::named(shape, &Axis::ALL)?
+            }
             Some(lengths) => Self::list(shape, lengths)?,
             None => match usual(shape)? {
                 axes if axes.is_empty() => Self::list(shape, [None; 5])?,
@@ -88,20 +98,6 @@ impl Layout {
         let Extent { frames, height, width, spp } = layout.extent;
         let shape = [frames, height, width, spp, layout.dims];
         layout.extent.validate(layout.dims).map_err(|problem| ImportError::Extent { shape, problem })?;
-        Ok(layout)
-    }
-
-    /// Axes that a file names must have the lengths that are given.
-    fn known(shape: &[usize], axes: &[Axis], options: &ImportOptions) -> Result<Self, ImportError> {
-        let layout = Self::named(shape, axes)?;
-        let Extent { frames, height, width, spp } = layout.extent;
-        let given = options.lengths().unwrap_or_default();
-        for (given, found) in given.into_iter().zip([frames, height, width, spp, layout.dims]) {
-            if given.is_some_and(|given| given != found) {
-                let given = given.unwrap_or(0);
-                return Err(ImportError::Lengths { values: shape.iter().product(), given });
-            }
-        }
         Ok(layout)
     }
 
@@ -272,6 +268,8 @@ mod tests {
         assert_eq!(shape(&[4099], &options([0; 5])), no_square(4099, "height", 1));
         // Not a list, but as long as is given all the same.
         assert_eq!(shape(&[8, 8, 64], &options([0, 64, 64, 0, 0])), Ok([1, 64, 64, 1, 1]));
+        // A table, as far as is given.
+        assert_eq!(shape(&[3, 8, 9, 2, 1], &options([0, 0, 0, 2, 1])), Ok([3, 8, 9, 2, 1]));
     }
 
     #[test]

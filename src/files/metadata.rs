@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use super::bytes::hexadecimal;
 use super::header::shortened;
 use crate::error::{FormatError, TableError};
 use crate::kernel::Tap;
@@ -135,6 +136,13 @@ pub struct RunRecord {
     /// Wall-clock time in seconds.
     #[serde(with = "number")]
     pub seconds: f64,
+    /// Number of the next step of slices, which names its random numbers: `from_table_with` goes on there.
+    /// `None` in files of before 2026-11-27.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub next_step: Option<u64>,
+    /// Number of the next sweep.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub next_sweep: Option<u64>,
 }
 
 impl Metadata {
@@ -280,7 +288,7 @@ impl Hash {
     /// In hexadecimal digits.
     pub(super) fn digits(mut self) -> String {
         self.hash.update(&self.block[..self.filled]);
-        self.hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+        hexadecimal(&self.hash.finalize())
     }
 }
 

@@ -1,6 +1,7 @@
 //! What lies on the disk: tables, their metadata, other people's files, and a writer whose files appear
 //! whole or not at all.
 
+mod bytes;
 mod c_source;
 mod dtype;
 mod export;
@@ -14,6 +15,7 @@ pub(crate) mod npy;
 mod text;
 mod whole;
 
+pub(crate) use self::bytes::{hexadecimal, little_endian};
 pub use self::dtype::Dtype;
 pub use self::export::{Depth, ExportOptions, ExportRecord, Exported, Format, RecordedFile, Rounding};
 pub use self::import::{ImportOptions, Imported};

@@ -8,6 +8,7 @@
 
 mod autocorrelation;
 pub(crate) mod fft;
+mod per_frame;
 mod spatial;
 mod taps;
 mod temporal;
@@ -39,13 +40,16 @@ use crate::table::extent::Extent;
 /// # Ok::<(), fsot::kernel::KernelError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Kernel {
     /// Weights in space.
     pub spatial: SpatialKernel,
     /// Weights in time.
+    #[serde(default)]
     pub temporal: TemporalKernel,
     /// Taps below this share of the largest are dropped; in `[0, 1)`. The default, 1e-3, keeps 97 taps of the
     /// Gaussian with `sigma_px = 2.1` and 99.9 % of its weight; 0 keeps everything down to 1e-12.
+    #[serde(default = "thousandth")]
     pub truncation: f64,
 }
 
@@ -71,7 +75,7 @@ impl Kernel {
 
     /// The product of both, with the default truncation.
     pub fn product(spatial: SpatialKernel, temporal: TemporalKernel) -> Self {
-        Self { spatial, temporal, truncation: 1e-3 }
+        Self { spatial, temporal, truncation: thousandth() }
     }
 
     /// The spatial filter within a frame, and the temporal filter within a pixel, as two kernels.
@@ -95,6 +99,9 @@ impl Kernel {
             return Err(range("truncation", self.truncation, "in [0, 1)"));
         }
         let truncation = self.truncation.max(NEGLIGIBLE);
+        if let SpatialKernel::PerFrame(frames) = &self.spatial {
+            return Ok(in_order(per_frame::taps(frames, &self.temporal, truncation, extent)?));
+        }
         let mut temporal = self.temporal.folded(extent.frames)?;
         let mut spatial = self.spatial.folded(extent)?;
         // Products of large or small weights would leave the range of numbers.
@@ -112,15 +119,24 @@ impl Kernel {
                 }
             }
         }
-        // Stable: equal weights stay in the order of their offsets.
-        taps.sort_by(|a, b| b.weight.total_cmp(&a.weight));
-        for tap in 1..taps.len() {
-            if taps[tap].weight > taps[tap - 1].weight * (1.0 - 1e-9) {
-                taps[tap].weight = taps[tap - 1].weight;
-            }
-        }
-        Ok(taps)
+        Ok(in_order(taps))
     }
+}
+
+fn thousandth() -> f64 {
+    1e-3
+}
+
+/// By falling weight, and those that differ by rounding only made equal.
+fn in_order(mut taps: Vec<Tap>) -> Vec<Tap> {
+    // Stable: equal weights stay in the order of their offsets.
+    taps.sort_by(|a, b| b.weight.total_cmp(&a.weight));
+    for tap in 1..taps.len() {
+        if taps[tap].weight > taps[tap - 1].weight * (1.0 - 1e-9) {
+            taps[tap].weight = taps[tap - 1].weight;
+        }
+    }
+    taps
 }
 
 #[cfg(test)]

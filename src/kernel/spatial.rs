@@ -18,7 +18,7 @@ use crate::table::extent::Extent;
 /// assert!((sigma_px - 1.5 * 2.0_f64.sqrt()).abs() < 1e-15);
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 #[non_exhaustive]
 pub enum SpatialKernel {
     /// `exp(-r² / sigma_px²)` with `r` in pixels; `sigma_px` in `(0, 1e6]`. The papers use 2.1.
@@ -38,6 +38,10 @@ pub enum SpatialKernel {
     },
     /// Any list of taps; repeated offsets add up.
     Taps(Vec<SpatialTap>),
+    /// Other taps for each frame back: the first list is of the current frame, the last one of all frames
+    /// from there on. The weights of a frame are multiplied by that of the temporal kernel, so that without
+    /// one the first list is left. Makes any filter over pixels and frames.
+    PerFrame(Vec<Vec<SpatialTap>>),
 }
 
 /// One tap of a custom spatial kernel.
@@ -51,6 +55,7 @@ pub enum SpatialKernel {
 /// # let _ = kernel;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct SpatialTap {
     /// Rows down from the filtered pixel.
     pub dy: i32,
@@ -68,19 +73,13 @@ impl SpatialKernel {
 
     /// Weights of the offsets `(dy, dx)` on a tile that wraps.
     pub(super) fn folded(&self, extent: &Extent) -> Result<BTreeMap<(i32, i32), f64>, KernelError> {
-        let mut folded = BTreeMap::new();
         let axis = match self {
             SpatialKernel::Gaussian { sigma_px } => gaussian("sigma_px", *sigma_px)?,
             SpatialKernel::Box { size_px } => vec![1.0; checked_size("size_px", *size_px)?],
             SpatialKernel::Binomial { size_px } => binomial("size_px", *size_px)?,
-            SpatialKernel::Taps(taps) => {
-                check_taps("the spatial kernel", taps.iter().map(|tap| tap.weight))?;
-                for tap in taps {
-                    let offset =
-                        (centred(tap.dy.into(), extent.height), centred(tap.dx.into(), extent.width));
-                    *folded.entry(offset).or_default() += tap.weight;
-                }
-                return Ok(folded);
+            SpatialKernel::Taps(taps) => return folded_taps(taps, extent),
+            SpatialKernel::PerFrame(frames) => {
+                return folded_taps(frames.first().map_or(&[], Vec::as_slice), extent);
             }
         };
         // A Gaussian is given by its right half, the others by all their taps.
@@ -99,6 +98,7 @@ impl SpatialKernel {
             folded
         };
         let (rows, columns) = (fold(extent.height), fold(extent.width));
+        let mut folded = BTreeMap::new();
         for (&dy, &row) in &rows {
             for (&dx, &column) in &columns {
                 folded.insert((dy, dx), row * column);
@@ -106,4 +106,18 @@ impl SpatialKernel {
         }
         Ok(folded)
     }
+}
+
+/// Weights of taps by their offsets on a tile that wraps.
+pub(super) fn folded_taps(
+    taps: &[SpatialTap],
+    extent: &Extent,
+) -> Result<BTreeMap<(i32, i32), f64>, KernelError> {
+    check_taps("the spatial kernel", taps.iter().map(|tap| tap.weight))?;
+    let mut folded = BTreeMap::new();
+    for tap in taps {
+        let offset = (centred(tap.dy.into(), extent.height), centred(tap.dx.into(), extent.width));
+        *folded.entry(offset).or_default() += tap.weight;
+    }
+    Ok(folded)
 }

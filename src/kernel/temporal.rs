@@ -16,11 +16,12 @@ use crate::error::KernelError;
 /// assert_eq!(history[..3], [1.0, 0.5, 0.25]);
 /// # Ok::<(), fsot::kernel::KernelError>(())
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 #[non_exhaustive]
 pub enum TemporalKernel {
     /// The current frame alone.
+    #[default]
     None,
     /// `exp(-k² / sigma_frames²)` for the frame `k` back; the same convention as in space.
     Gaussian {

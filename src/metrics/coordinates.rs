@@ -1,5 +1,7 @@
 //! The coordinates of one dimension group.
 
+use std::ops::Range;
+
 use super::error::MeasureError;
 use super::integrand::Integrand;
 use super::samples::{Samples, Values};
@@ -51,8 +53,14 @@ impl Coordinates {
 
     /// Error of every site, in the order of sites.
     pub fn errors(&self, integrand: &Integrand) -> impl Iterator<Item = f64> {
+        self.errors_in(0..self.extent.sites(), integrand)
+    }
+
+    /// Error of the sites of a range, in the order of sites.
+    pub fn errors_in(&self, sites: Range<usize>, integrand: &Integrand) -> impl Iterator<Item = f64> {
         let share = 1.0 / self.extent.spp as f64;
-        self.values.chunks_exact(self.extent.spp * self.dims).map(move |pixel| {
+        let pixel = self.extent.spp * self.dims;
+        self.values[sites.start * pixel..sites.end * pixel].chunks_exact(pixel).map(move |pixel| {
             let sum: f64 = pixel.chunks_exact(self.dims).map(|x| integrand.value(x)).sum();
             sum * share - integrand.integral()
         })

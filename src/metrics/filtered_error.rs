@@ -11,6 +11,8 @@ use crate::kernel::fft::Transform;
 use crate::kernel::{Kernel, TemporalKernel};
 use crate::table::extent::Extent;
 
+mod some_frames;
+
 /// Mean squared error of a table before and after filtering, each as ratio to white noise of the same shape.
 ///
 /// The filter replaces the error image `e` by `Σ_tap w e(p + tap) / Σ_tap w`, which wraps in space and time.
@@ -127,20 +129,31 @@ impl Meter {
 
     /// Mean squares of the three stages, of the real and of the imaginary part of an image.
     fn mean_squares(&self, image: &[Complex64]) -> [[f64; 3]; 2] {
-        let mut sums = [[0.0; 3]; 2];
-        for ((&value, &mirror), power) in image.iter().zip(&self.mirrors).zip(&self.power) {
-            // The parts' transforms are A = (Z(k) + Z(−k)*) / 2 and B = (Z(k) − Z(−k)*) / 2i. Over the pair
-            // of k and −k, on which the power of a real kernel is equal, |A|² sums to |Z|² + Re Z(k) Z(−k),
-            // twice over, and |B|² to the difference.
-            let (square, cross) = (value.norm_sqr(), (value * image[mirror as usize]).re);
-            for stage in 0..3 {
-                sums[0][stage] += power[stage] * (square + cross);
-                sums[1][stage] += power[stage] * (square - cross);
-            }
-        }
+        let sums = sums_of_squares(image, &self.mirrors, |site| self.power[site]);
         let sites = image.len() as f64;
         sums.map(|part| part.map(|sum| 0.5 * sum / (sites * sites)))
     }
+}
+
+/// Twice the sums over frequencies of the power of an image's real and of its imaginary part, from its Fourier
+/// transform, with each frequency's power changed by the factors of real kernels.
+fn sums_of_squares<const STAGES: usize>(
+    image: &[Complex64],
+    mirrors: &[u32],
+    power: impl Fn(usize) -> [f64; STAGES],
+) -> [[f64; STAGES]; 2] {
+    let mut sums = [[0.0; STAGES]; 2];
+    for (site, (&value, &mirror)) in image.iter().zip(mirrors).enumerate() {
+        // The parts' transforms are A = (Z(k) + Z(−k)*) / 2 and B = (Z(k) − Z(−k)*) / 2i. Over the pair
+        // of k and −k, on which the power of a real kernel is equal, |A|² sums to |Z|² + Re Z(k) Z(−k),
+        // twice over, and |B|² to the difference.
+        let (square, cross) = (value.norm_sqr(), (value * image[mirror as usize]).re);
+        for (stage, power) in power(site).into_iter().enumerate() {
+            sums[0][stage] += power * (square + cross);
+            sums[1][stage] += power * (square - cross);
+        }
+    }
+    sums
 }
 
 #[cfg(test)]

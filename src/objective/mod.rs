@@ -239,6 +239,18 @@ impl Objective {
         !self.wanted.is_partial() && given.eq(self.terms().map(|term| &term.dims))
     }
 
+    /// The sites that are demanded, unless all are, and the dimensions of the terms, for a hash.
+    pub(crate) fn demanded(&self) -> Vec<u8> {
+        let sites = if self.wanted.is_partial() { self.extent.sites() } else { 0 };
+        let mut bytes: Vec<u8> = (0..sites).map(|site| u8::from(self.wanted.site(site))).collect();
+        for term in self.terms() {
+            bytes.push(u8::MAX);
+            // At most MOST_DIMS.
+            bytes.extend(term.dims.iter().map(|&dim| dim as u8));
+        }
+        bytes
+    }
+
     /// Whether a balance takes slices beside sweeps.
     pub(crate) fn has_balances_beside_sweeps(&self) -> bool {
         let mut balances = self.terms.iter().filter(|term| term.spec.role == Role::Balance);

@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::Optimizer;
+use super::course::MOST_COUNT;
 use crate::config::{Role, Until, Work};
 use crate::error::{ConfigError, RangeError};
 use crate::objective::Pace;
@@ -16,8 +17,6 @@ const USUAL_SLICES: u64 = 320;
 /// Share of the time of an animation that its first frame gets: the frame's quality is what single frames
 /// keep.
 const FRAME_SHARE: f64 = 0.2;
-/// Most slices per class, and sweeps, of a run.
-const MOST_COUNT: u64 = 1_000_000_000;
 /// Least share of the work that terms by which a run is counted may do.
 const LEAST_SHARE: f64 = 1e-3;
 /// Windows of a calibration that would fill the time of a run: a dozen are needed at most.
@@ -32,7 +31,7 @@ const MOST_FRAME_SWEEPS: f64 = 2000.0;
 
 impl Optimizer {
     /// The work of a run.
-    pub(super) fn plan(&mut self, until: Until) -> Result<Work, ConfigError> {
+    pub(super) fn work_of(&mut self, until: Until) -> Result<Work, ConfigError> {
         let slices = |slices_per_class| Work { slices_per_class, ..Work::default() };
         let work = match until {
             Until::SlicesPerClass(slices_per_class) => slices(slices_per_class),
@@ -72,7 +71,7 @@ impl Optimizer {
     }
 
     /// The pace of slices, if terms that count do their share of the work.
-    fn even_pace(&self) -> Result<Pace, ConfigError> {
+    pub(super) fn even_pace(&self) -> Result<Pace, ConfigError> {
         let pace = self.objective.pace();
         let share = pace.share;
         if share >= LEAST_SHARE { Ok(pace) } else { Err(ConfigError::Uneven { share }) }
@@ -131,7 +130,7 @@ impl Optimizer {
     }
 
     /// Times a few steps that leave the table as it is.
-    fn seconds_per_batch(&mut self, window: Duration) -> f64 {
+    pub(super) fn seconds_per_batch(&mut self, window: Duration) -> f64 {
         let (fresh, steps) = (self.fresh, self.steps);
         // The first step grows the buffers and does not count, unless it has taken its time.
         let begin = Instant::now();
@@ -147,7 +146,7 @@ impl Optimizer {
     }
 
     /// Times a few steps of sweeps that leave the table as it is.
-    fn seconds_per_sweep(&mut self, window: Duration) -> Result<f64, ConfigError> {
+    pub(super) fn seconds_per_sweep(&mut self, window: Duration) -> Result<f64, ConfigError> {
         let (fresh, swept) = (self.fresh, self.swept);
         let sweeper = self.sweeper()?;
         let (steps, turns) = (sweeper.steps(), sweeper.turns());

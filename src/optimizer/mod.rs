@@ -1,16 +1,26 @@
 //! The optimiser: a table on its way, steps and runs.
 
 mod budget;
+mod checkpoint;
+mod course;
 mod frame;
+mod plan;
 mod record;
 mod report;
+mod resume;
 mod run;
 
 use std::ops::ControlFlow;
+use std::sync::OnceLock;
 
+pub use self::checkpoint::Checkpoint;
+use self::checkpoint::Identity;
+use self::course::Course;
+pub use self::plan::Plan;
 pub use self::report::{RunReport, SliceStep, StepReport};
 use crate::classes::Demand;
 use crate::config::{Config, Role, Until, check_step};
+pub use crate::error::CheckpointError;
 use crate::error::ConfigError;
 use crate::objective::Objective;
 use crate::slices::{Picked, Slices, Step};
@@ -46,6 +56,10 @@ pub struct Optimizer {
     swept: u64,
     /// Whether the points are still those that this optimiser began with.
     fresh: bool,
+    /// The run that goes on, and the points of the frame that it begins with, if it is there.
+    resumed: Option<(Course, Option<Vec<f32>>)>,
+    /// Found when it is first needed.
+    identity: OnceLock<Identity>,
 }
 
 impl std::fmt::Debug for Optimizer {
@@ -127,30 +141,18 @@ impl Optimizer {
         let mut points = crate::random::uniforms(config.seed, config.extent.samples() * config.dims);
         objective.place(&mut points);
         let slices = Slices::new(config.descent, points.len());
-        Ok(Self { slices, steps: 0, sweeper: None, swept: 0, fresh: true, points, objective, config })
-    }
-
-    /// Starts from a table, as made by an earlier run.
-    ///
-    /// # Errors
-    /// As [`Optimizer::new`]; a table whose shape is not that of the configuration.
-    pub fn from_table(config: Config, table: SampleTable) -> Result<Self, ConfigError> {
-        let mut optimizer = Self::new(config)?;
-        optimizer.start_from(table)?;
-        Ok(optimizer)
-    }
-
-    /// Goes on from this table instead of what was reached, with fresh moments.
-    ///
-    /// # Errors
-    /// A table whose shape is not that of the configuration.
-    pub fn start_from(&mut self, table: SampleTable) -> Result<(), ConfigError> {
-        self.objective.check_table(&table)?;
-        self.points = table.into_values();
-        self.slices = Slices::new(self.config.descent, self.points.len());
-        self.sweeper = None;
-        self.fresh = false;
-        Ok(())
+        Ok(Self {
+            slices,
+            steps: 0,
+            sweeper: None,
+            swept: 0,
+            fresh: true,
+            resumed: None,
+            identity: OnceLock::new(),
+            points,
+            objective,
+            config,
+        })
     }
 
     /// The configuration.
@@ -190,6 +192,7 @@ impl Optimizer {
     /// A `rate` or a `balance` outside of `0..=1e6` ([`ConfigError::Range`]). Nothing is changed then.
     pub fn step(&mut self, rate: f64, balance: f64) -> Result<SliceStep, ConfigError> {
         check_step(rate, balance)?;
+        self.resumed = None;
         Ok(rayon::scope(|_| self.step_in_pool(rate, balance)))
     }
 
@@ -224,6 +227,7 @@ impl Optimizer {
     /// closed form ([`ConfigError::NotInClosedForm`]). Nothing is changed then.
     pub fn sweep(&mut self, rate: f64, balance: f64) -> Result<f64, ConfigError> {
         check_step(rate, balance)?;
+        self.resumed = None;
         rayon::scope(|_| self.sweep_in_pool(rate, balance))
     }
 

@@ -26,7 +26,7 @@ impl Optimizer {
         };
         Metadata {
             kernels: (0..self.objective.terms.len()).filter_map(taps).collect(),
-            run: report.into(),
+            run: RunRecord { next_step: Some(self.steps), next_sweep: Some(self.swept), ..report.into() },
             ..Metadata::new(self.config.extent, self.config.dims, self.config.seed, configuration)
         }
     }
@@ -45,6 +45,7 @@ impl From<&RunReport> for RunRecord {
             ended_early: report.ended != EndReason::Finished,
             steps: report.steps,
             seconds: report.elapsed.as_secs_f64(),
+            ..Self::default()
         }
     }
 }

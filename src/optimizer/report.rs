@@ -3,6 +3,8 @@
 use std::sync::OnceLock;
 use std::time::Duration;
 
+use super::checkpoint::{Checkpoint, Identity, Place};
+use super::course::Course;
 use super::frame::displaced;
 
 use crate::config::{Config, EndReason, Role, Work};
@@ -84,6 +86,10 @@ pub(super) struct Current<'a> {
     pub sweeper: Option<&'a Sweeper>,
     /// What the loss is estimated on: drawn once a run.
     pub loss_slices: &'a OnceLock<Vec<Slice>>,
+    pub course: &'a Course,
+    /// Where slices, sweeps and moments are.
+    pub place: Place<'a>,
+    pub identity: &'a OnceLock<Identity>,
 }
 
 impl std::fmt::Debug for Current<'_> {
@@ -118,14 +124,54 @@ impl StepReport<'_> {
         objective.value(&self.points(), slices)
     }
 
+    /// All that the rest of the run depends on, as it is after the step; a copy. Who
+    /// [resumes](crate::Optimizer::resume) it ends with the same bits as this run.
+    ///
+    /// ```
+    /// use std::ops::ControlFlow;
+    ///
+    /// use fsot::optimizer::Checkpoint;
+    /// use fsot::{Config, Extent, Optimizer, Until};
+    ///
+    /// let config = Config::new(Extent::still(16, 16), 2);
+    /// let mut file = Vec::new();
+    /// let mut killed = Optimizer::new(config.clone())?;
+    /// killed.run_observed(Until::Sweeps(8), |step| {
+    ///     if step.step != 40 {
+    ///         return ControlFlow::Continue(());
+    ///     }
+    ///     step.checkpoint().write(&mut file).expect("memory takes everything");
+    ///     ControlFlow::Break(())
+    /// })?;
+    ///
+    /// let checkpoint = Checkpoint::read(&mut file.as_slice())?;
+    /// let mut resumed = Optimizer::new(checkpoint.config()?)?;
+    /// resumed.resume(checkpoint)?;
+    /// resumed.finish()?;
+    /// assert_eq!(resumed.into_table(), config.optimize(Until::Sweeps(8))?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn checkpoint(&self) -> Checkpoint {
+        let Current { config, objective, course, place, identity, .. } = self.current;
+        let course = Course { spent: self.elapsed, ..course.clone() };
+        let identity = identity.get_or_init(|| Identity::new(config, objective));
+        Checkpoint::new(config, identity, Some(course), place, self.swept())
+    }
+
     fn points(&self) -> Vec<f32> {
+        let points = self.swept();
+        let Config { extent, dims, .. } = *self.current.config;
+        // The frame that an animation begins with stands for all of them.
+        if points.len() < extent.samples() * dims { displaced(extent, &points) } else { points }
+    }
+
+    /// The points that are optimised: of all frames, or of the one that an animation begins with.
+    fn swept(&self) -> Vec<f32> {
         let mut points = self.current.points.to_vec();
         if let Some(sweeper) = self.current.sweeper {
             sweeper.write_to(&mut points);
         }
-        let Config { extent, dims, .. } = *self.current.config;
-        // The frame that an animation begins with stands for all of them.
-        if points.len() < extent.samples() * dims { displaced(extent, &points) } else { points }
+        points
     }
 }
 
@@ -153,26 +199,4 @@ pub struct RunReport {
     pub work: Work,
     /// Time of the steps, without calibration.
     pub elapsed: Duration,
-}
-
-/// Mean squared displacement of this and the last window.
-#[derive(Default)]
-pub(crate) struct Plateau {
-    last: Option<f64>,
-    sum: f64,
-    steps: u64,
-}
-
-impl Plateau {
-    pub(crate) fn reached(&mut self, squared: f64, improvement: f64, window: u64) -> bool {
-        self.sum += squared;
-        self.steps += 1;
-        if self.steps < window {
-            return false;
-        }
-        let mean = self.sum / window as f64;
-        let stalled = self.last.is_some_and(|last| mean > last * (1.0 - improvement));
-        *self = Self { last: Some(mean), sum: 0.0, steps: 0 };
-        stalled
-    }
 }

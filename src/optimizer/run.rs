@@ -2,13 +2,15 @@
 
 use std::ops::ControlFlow;
 use std::sync::OnceLock;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
+use super::course::Course;
 use super::frame::displaced;
-use super::report::{Current, Plateau, RunReport, StepReport};
+use super::report::{Current, RunReport, StepReport};
 use super::{Optimizer, SliceStep};
 use crate::config::{EndReason, Until, Work};
 use crate::error::ConfigError;
+use crate::objective::Slice;
 use crate::slices::Slices;
 use crate::sweeps::Motion;
 
@@ -41,6 +43,38 @@ impl Optimizer {
         rayon::scope(|_| self.run_in_pool(until, &mut observe))
     }
 
+    /// Goes on with the run that was [resumed](Optimizer::resume), to its end: see
+    /// [`Optimizer::finish_observed`].
+    ///
+    /// # Errors
+    /// As [`Optimizer::finish_observed`].
+    pub fn finish(&mut self) -> Result<RunReport, ConfigError> {
+        self.finish_observed(|_| ControlFlow::Continue(()))
+    }
+
+    /// Goes on with the run that was [resumed](Optimizer::resume), to its end or until `observe` breaks off.
+    /// Steps, slices and time are counted from where that run began. Without one there is nothing to do.
+    ///
+    /// # Errors
+    /// What [`Optimizer::new`] refuses of the frame that an animation begins with: nothing, if the checkpoint
+    /// was made by this version.
+    pub fn finish_observed(
+        &mut self,
+        mut observe: impl FnMut(&StepReport) -> ControlFlow<()> + Send,
+    ) -> Result<RunReport, ConfigError> {
+        rayon::scope(|_| {
+            let Some((course, of_frame)) = self.resumed.take() else {
+                let nothing = Course::new(Work::default(), Until::Sweeps(0));
+                return self.follow(nothing, None, &mut observe);
+            };
+            let frame = match of_frame {
+                Some(points) => self.of_a_frame()?.map(|frame| frame.swept_to(points, course.step)),
+                None => None,
+            };
+            self.follow(course, frame, &mut observe)
+        })
+    }
+
     fn run_in_pool(
         &mut self,
         until: Until,
@@ -48,56 +82,49 @@ impl Optimizer {
     ) -> Result<RunReport, ConfigError> {
         // A closure that panicked in an earlier run may have left one behind.
         self.sweeper = None;
-        let work = match self.plan(until) {
+        let work = match self.work_of(until) {
             Ok(work) => work,
             Err(error) => {
                 self.sweeper = None;
                 return Err(error);
             }
         };
-        let Work { frame_sweeps, slices_per_class, sweeps } = work;
-        let frame = if frame_sweeps > 0 { self.of_a_frame()? } else { None };
-        let frame_sweeps = if frame.is_some() { frame_sweeps } else { 0 };
-        let work = Work { frame_sweeps, ..work };
+        let frame = if work.frame_sweeps > 0 { self.of_a_frame()? } else { None };
+        let work = if frame.is_some() { work } else { Work { frame_sweeps: 0, ..work } };
+        self.resumed = None;
+        self.slices = Slices::new(self.config.descent, self.points.len());
+        self.follow(Course::new(work, until), frame, observe)
+    }
+
+    /// Goes from where a course is to its end; at first with the frame that an animation begins with, if that
+    /// is not done.
+    fn follow(
+        &mut self,
+        mut course: Course,
+        frame: Option<Optimizer>,
+        observe: &mut dyn FnMut(&StepReport) -> ControlFlow<()>,
+    ) -> Result<RunReport, ConfigError> {
+        let Work { frame_sweeps, slices_per_class, sweeps } = course.work;
         let batches = self.objective.pace().steps_of(slices_per_class);
         let steps_per_sweep = if sweeps > 0 { self.sweeper()?.steps() } else { 1 };
         let swept = sweeps.saturating_mul(steps_per_sweep as u64);
         let steps = frame_sweeps.saturating_add(batches).saturating_add(swept);
-        self.slices = Slices::new(self.config.descent, self.points.len());
-        let begin = Instant::now();
-        let (mut plateau, loss_slices) = (Plateau::default(), OnceLock::new());
-        let (ended, elapsed) = (EndReason::Finished, Duration::ZERO);
-        let mut report = RunReport { ended, steps: 0, slices: 0, work, elapsed };
-        if let Some(mut frame) = frame {
-            let per_sweep = frame.sweeper()?.steps() as u64;
-            let work = Work { sweeps: frame_sweeps, ..Work::default() };
-            let of_frame = frame.run_in_pool(Until::Work(work), &mut |seen| {
-                // A frame's steps are short: one report a sweep.
-                if !seen.step.is_multiple_of(per_sweep) {
-                    return ControlFlow::Continue(());
-                }
-                let of_all = Current {
-                    config: &self.config,
-                    objective: &self.objective,
-                    loss_slices: &loss_slices,
-                    ..seen.current
-                };
-                let elapsed = begin.elapsed();
-                observe(&StepReport { step: seen.step / per_sweep, steps, elapsed, current: of_all, ..*seen })
-            })?;
-            report.steps = of_frame.steps / per_sweep;
-            report.ended = of_frame.ended;
-            self.points = displaced(self.config.extent, frame.points());
-            self.fresh = false;
+        let (begin, before) = (Instant::now(), course.spent);
+        let elapsed = || before + begin.elapsed();
+        let loss_slices = OnceLock::new();
+        let mut ended = if course.has_converged() { EndReason::Converged } else { EndReason::Finished };
+        if let Some(frame) = frame {
+            ended = self.follow_frame(&mut course, frame, steps, &loss_slices, observe)?;
         }
-        let rest = if report.ended == EndReason::Finished { batches.saturating_add(swept) } else { 0 };
-        for step in 0..rest {
+        let first = course.step.saturating_sub(frame_sweeps);
+        let rest = if ended == EndReason::Finished { first..batches.saturating_add(swept) } else { 0..0 };
+        for step in rest {
             let (displacement, rate) = if step < batches {
                 let progress = step as f64 / batches as f64;
                 let rate = self.config.descent.rate().at(progress);
                 let SliceStep { displacement, slices } =
                     self.step_in_pool(rate, self.config.balance.at(progress));
-                report.slices += slices;
+                course.slices += slices;
                 (displacement, rate)
             } else {
                 if step == batches {
@@ -105,44 +132,92 @@ impl Optimizer {
                     self.slices.release();
                 }
                 let progress = (step - batches) as f64 / swept as f64;
-                let (rates, softening) = self.config.sweeps.of_a_run(work);
+                let (rates, softening) = self.config.sweeps.of_a_run(course.work);
                 let (rate, balance) = (rates.at(progress), self.config.balance.at(progress));
                 let part = (step - batches) as usize % steps_per_sweep;
+                if step == first && part > 0 {
+                    self.begin_again()?;
+                }
                 (self.sweep_step(part, Motion { rate, softening, balance })?.root(), rate)
             };
-            report.steps += 1;
+            course.step += 1;
+            if let Some(plateau) = &mut course.plateau {
+                plateau.add(displacement * displacement);
+            }
             let current = Current {
                 config: &self.config,
                 objective: &self.objective,
                 points: &self.points,
                 sweeper: self.sweeper.as_ref(),
                 loss_slices: &loss_slices,
+                course: &course,
+                place: self.place(),
+                identity: &self.identity,
             };
-            let (step, slices, elapsed) = (report.steps, report.slices, begin.elapsed());
-            let seen = StepReport { step, steps, slices, displacement, rate, elapsed, current };
+            let Course { step, slices, .. } = course;
+            let seen = StepReport { step, steps, slices, displacement, rate, elapsed: elapsed(), current };
             if observe(&seen).is_break() {
-                report.ended = EndReason::Stopped;
+                ended = EndReason::Stopped;
                 break;
             }
-            if let Until::Converged { improvement, window_steps, .. } = until
-                && plateau.reached(displacement * displacement, improvement, window_steps)
-            {
-                report.ended = EndReason::Converged;
+            if course.has_converged() {
+                ended = EndReason::Converged;
                 break;
             }
         }
-        if sweeps > 0 && report.ended == EndReason::Finished {
+        if sweeps > 0 && ended == EndReason::Finished {
             self.settle(self.config.balance.at(1.0));
         }
         // A run may be broken off between two balances.
         self.fetch();
-        if report.slices > 0 {
+        if course.slices > 0 {
             self.objective.settle(&mut self.points);
         }
-        report.elapsed = begin.elapsed();
+        let Course { work, step: steps, slices, .. } = course;
+        let report = RunReport { ended, steps, slices, work, elapsed: elapsed() };
         // Nobody needs the buffers until the next run.
         self.slices.release();
         self.sweeper = None;
         Ok(report)
+    }
+
+    /// Sweeps the frame that an animation begins with, and makes all frames of it.
+    fn follow_frame(
+        &mut self,
+        course: &mut Course,
+        mut frame: Optimizer,
+        steps: u64,
+        loss_slices: &OnceLock<Vec<Slice>>,
+        observe: &mut dyn FnMut(&StepReport) -> ControlFlow<()>,
+    ) -> Result<EndReason, ConfigError> {
+        let per_sweep = frame.sweeper()?.steps() as u64;
+        let sweeps = course.work.frame_sweeps;
+        let of_frame = Course {
+            step: course.step * per_sweep,
+            spent: course.spent,
+            ..Course::new(Work { sweeps, ..Work::default() }, Until::Sweeps(sweeps))
+        };
+        let (place, of_all) = (self.place(), course.clone());
+        let report = frame.follow(of_frame, None, &mut |seen| {
+            // A frame's steps are short: one report a sweep.
+            if !seen.step.is_multiple_of(per_sweep) {
+                return ControlFlow::Continue(());
+            }
+            let step = seen.step / per_sweep;
+            let current = Current {
+                config: &self.config,
+                objective: &self.objective,
+                course: &Course { step, ..of_all.clone() },
+                identity: &self.identity,
+                loss_slices,
+                place,
+                ..seen.current
+            };
+            observe(&StepReport { step, steps, current, ..*seen })
+        })?;
+        course.step = report.steps / per_sweep;
+        self.points = displaced(self.config.extent, frame.points());
+        self.fresh = false;
+        Ok(report.ended)
     }
 }

@@ -8,6 +8,7 @@ use super::part::TablePart;
 use crate::config::Role;
 use crate::objective::Objective;
 use crate::objective::plan::PlannedTerm;
+use crate::table::extent::bytes_of;
 use crate::transport::SHARED;
 
 /// Subsets per chunk: large enough to pay for handing it to a thread.
@@ -42,6 +43,12 @@ pub(super) struct Batch {
 }
 
 impl Batch {
+    /// Bytes that it holds.
+    pub(super) fn bytes(&self) -> usize {
+        let chunks: usize = self.chunks.iter().map(Chunk::bytes).sum();
+        bytes_of(&self.draws) + bytes_of(&self.order) + bytes_of(&self.large) + chunks
+    }
+
     pub(super) fn clear(&mut self) {
         self.draws.clear();
         self.order.clear();

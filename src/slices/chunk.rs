@@ -10,6 +10,7 @@ use crate::directions::cube_bank::Boundary;
 use crate::objective::Objective;
 use crate::objective::plan::PlannedTerm;
 use crate::simd::LANES;
+use crate::table::extent::bytes_of;
 use crate::transport::abreast::{self, AbreastBuffers, LaneSubset};
 use crate::transport::cells::LaneLaws;
 use crate::transport::gather::{Gather, SubsetSamples};
@@ -118,7 +119,20 @@ impl<'a, Draws: Iterator<Item = &'a SubsetDraw>> WithSimd for Transport<'a, Draw
     }
 }
 
+impl Scratch {
+    /// Bytes that grow with the largest subset.
+    pub(super) fn bytes(&self) -> usize {
+        bytes_of(&self.subset) + bytes_of(&self.weights) + bytes_of(&self.grid) + self.line.bytes()
+    }
+}
+
 impl Chunk {
+    /// Bytes that it holds.
+    pub(super) fn bytes(&self) -> usize {
+        let floats = bytes_of(&self.moves) + bytes_of(&self.thetas) + bytes_of(&self.masses);
+        bytes_of(&self.subsets) + bytes_of(&self.samples) + floats
+    }
+
     fn clear(&mut self) {
         self.subsets.clear();
         self.samples.clear();

@@ -9,6 +9,7 @@ use crate::directions::Directions;
 use crate::objective::{Objective, Slice};
 use crate::random::{self, GOLDEN_RATIO, Purpose};
 use crate::table::domain::Domain;
+use crate::table::extent::bytes_of;
 
 /// One subset of a step, before its samples and directions are looked up.
 #[derive(Clone, Copy, Debug)]
@@ -176,6 +177,11 @@ impl Objective {
 }
 
 impl VisitOrder {
+    /// Bytes that it holds.
+    pub(super) fn bytes(&self) -> usize {
+        bytes_of(&self.members)
+    }
+
     fn turn_to(&mut self, seed: u64, term: u64, epoch: u64, family: &FilterFamily) {
         if self.epoch != Some(epoch) {
             self.epoch = Some(epoch);

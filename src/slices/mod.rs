@@ -26,9 +26,10 @@ use self::chunk::{Chunk, Scratch, Transport};
 pub(crate) use self::draw::Picked;
 use self::draw::{SubsetDraw, VisitOrder};
 use self::part::{Pull, TablePart};
-use self::walk::Walker;
+pub(crate) use self::walk::Walker;
 use crate::config::{Descent, Role};
 use crate::objective::Objective;
+use crate::table::extent::bytes_of;
 
 /// What a step does.
 #[derive(Clone, Copy, Debug)]
@@ -85,6 +86,33 @@ impl Slices {
         }
     }
 
+    /// The descent, with its moments.
+    pub(crate) fn walker(&self) -> &Walker {
+        &self.walker
+    }
+
+    /// Goes on with these moments.
+    pub(crate) fn set_walker(&mut self, walker: Walker) {
+        self.walker = walker;
+    }
+
+    /// Bytes of all buffers that grow with the table.
+    pub(crate) fn bytes(&self) -> usize {
+        let Self { orders, batches, workers, pull, walker } = self;
+        let scratch = |scratch: &Mutex<Option<Scratch>>| {
+            scratch.lock().unwrap_or_else(PoisonError::into_inner).as_ref().map_or(0, Scratch::bytes)
+        };
+        orders.iter().map(VisitOrder::bytes).sum::<usize>()
+            + batches.descended.bytes()
+            + batches.balanced.bytes()
+            + workers.scratch.iter().map(scratch).sum::<usize>()
+            + workers.large.bytes()
+            + workers.alone.bytes()
+            + bytes_of(&pull.sums)
+            + bytes_of(&pull.hits)
+            + walker.bytes()
+    }
+
     /// Gives buffers back: they are as large as the largest subset, and copies of the table.
     pub(crate) fn release(&mut self) {
         (self.orders, self.batches, self.workers) = (Vec::new(), Batches::default(), Workers::new());
@@ -107,7 +135,7 @@ impl Slices {
         let samples = points.len() / objective.dims;
 
         let Self { batches, pull, walker, .. } = self;
-        let table = TablePart { points, moments: walker.moments(), ..pull.part(objective.dims) };
+        let table = TablePart { points, moments: walker.moments_mut(), ..pull.part(objective.dims) };
         table.for_each(batches.samples_per_part(samples), &|mut part| {
             if let Some(walk) = walk {
                 batches.descended.add_up(objective, &mut part);

@@ -3,6 +3,7 @@
 use super::part::TablePart;
 use crate::config::Descent;
 use crate::table::domain::Domain;
+use crate::table::extent::bytes_of;
 
 /// Moves the samples of a part by `rate` times their mean pull and clears the pull. `domains` has one entry
 /// per dimension.
@@ -30,6 +31,11 @@ pub(crate) enum Walk {
 }
 
 impl Walker {
+    /// Bytes that it holds.
+    pub(super) fn bytes(&self) -> usize {
+        bytes_of(&self.first) + bytes_of(&self.second)
+    }
+
     pub(crate) fn new(descent: Descent, coordinates: usize) -> Self {
         let (first, second) = match descent {
             Descent::Barycentric { .. } => (0, 0),
@@ -55,8 +61,23 @@ impl Walker {
     }
 
     /// First and second moments of all coordinates; empty where the descent has none.
-    pub(crate) fn moments(&mut self) -> [&mut [f32]; 2] {
+    pub(crate) fn moments(&self) -> [&[f32]; 2] {
+        [&self.first, &self.second]
+    }
+
+    pub(crate) fn moments_mut(&mut self) -> [&mut [f32]; 2] {
         [&mut self.first, &mut self.second]
+    }
+
+    /// Steps that made them.
+    pub(crate) fn steps(&self) -> i32 {
+        self.steps
+    }
+
+    /// Goes on with these moments, made by so many steps; `None` if they are none of this descent's.
+    pub(crate) fn with_moments(self, [first, second]: [Vec<f32>; 2], steps: i32) -> Option<Self> {
+        let fits = first.len() == self.first.len() && second.len() == self.second.len();
+        (fits && steps >= 0).then_some(Self { first, second, steps, ..self })
     }
 }
 
@@ -125,7 +146,8 @@ mod tests {
     fn step(walker: &mut Walker, rate: f64, point: &mut [f32; 1], pull: &mut Pull) {
         let walk = walker.step(rate);
         let (sums, hits) = (&mut pull.sums, &mut pull.hits);
-        let mut part = TablePart { first: 0, dims: 1, points: point, sums, hits, moments: walker.moments() };
+        let mut part =
+            TablePart { first: 0, dims: 1, points: point, sums, hits, moments: walker.moments_mut() };
         walk.advance(&[Domain::Interval], &mut part);
     }
 

@@ -11,7 +11,7 @@ use super::reflect;
 use crate::objective::Objective;
 use crate::simd::{self, LANES, Row};
 use crate::table::domain::Domain;
-use crate::table::extent::{Extent, MOST_DIMS};
+use crate::table::extent::{Extent, MOST_DIMS, bytes_of};
 
 /// The demanded samples of a table, packed.
 ///
@@ -60,6 +60,16 @@ const PROBES: usize = 256;
 const WORTH_SHARING: f64 = 8192.0;
 
 impl Scattered {
+    /// Bytes that it holds.
+    pub(super) fn bytes(&self) -> usize {
+        let of = |list: &Neighbours| {
+            let floats = bytes_of(&list.weights) + bytes_of(&list.totals) + bytes_of(&list.steps);
+            bytes_of(&list.starts) + bytes_of(&list.offsets) + floats
+        };
+        let lists: usize = self.neighbours.iter().map(of).sum();
+        bytes_of(&self.sites) + bytes_of(&self.points) + lists
+    }
+
     /// Lists the neighbours of what is demanded, where that costs less than `pairs` of tiles, and not too
     /// much memory; `None` where it doesn't.
     pub(super) fn new(objective: &Objective, terms: &[Pairs], pairs: f64) -> Option<Self> {

@@ -19,6 +19,7 @@ use crate::objective::plan::PlannedTerm;
 use crate::random::{self, Purpose};
 use crate::simd::{self, LANES, Row};
 use crate::table::domain::Domain;
+use crate::table::extent::bytes_of;
 
 /// A table on its way through sweeps.
 ///
@@ -173,6 +174,12 @@ impl Sweeper {
     /// Steps of a sweep.
     pub(crate) fn steps(&self) -> usize {
         self.steps
+    }
+
+    /// Bytes of all buffers that grow with the table.
+    pub(crate) fn bytes(&self) -> usize {
+        let scattered = self.scattered.as_ref().map_or(0, Scattered::bytes);
+        self.tiles.bytes() + scattered + bytes_of(&self.order) + bytes_of(&self.pulls)
     }
 
     /// Pairs of samples that a sweep looks at.

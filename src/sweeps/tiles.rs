@@ -11,7 +11,7 @@ use crate::classes::Wanted;
 use crate::kernel::Tap;
 use crate::simd::{LANES, Row};
 use crate::table::domain::Domain;
-use crate::table::extent::{Extent, Site};
+use crate::table::extent::{Extent, Site, bytes_of};
 
 /// Copy of a table in which a vector holds the same cell of sixteen tiles.
 ///
@@ -70,6 +70,11 @@ impl Run {
 }
 
 impl Tiles {
+    /// Bytes that it holds.
+    pub(super) fn bytes(&self) -> usize {
+        bytes_of(&self.values) + bytes_of(&self.owners)
+    }
+
     /// Room for a table, whose samples see others at the offsets of `taps`.
     pub(super) fn new(extent: Extent, dims: usize, taps: &[Tap], wanted: &Wanted) -> Self {
         let axes = cut(&extent, taps, wanted);

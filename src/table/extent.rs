@@ -17,6 +17,7 @@ use crate::error::ExtentError;
 /// assert_eq!((extent.sites(), extent.samples()), (8 * 64 * 32, 4 * 8 * 64 * 32));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Extent {
     /// Frames; the animation wraps, frame `frames` is frame 0 again.
     pub frames: usize,
@@ -183,6 +184,11 @@ pub(crate) fn check_memory(what: &'static str, bytes: usize) -> Result<(), Exten
     // Else the compiler may find that nobody uses it, and not ask.
     std::hint::black_box(room.as_ptr());
     reserved.map_err(|_| ExtentError::NoMemory { what, bytes })
+}
+
+/// Bytes that a buffer holds, used or not.
+pub(crate) fn bytes_of<T>(buffer: &Vec<T>) -> usize {
+    size_of::<T>() * buffer.capacity()
 }
 
 #[cfg(test)]

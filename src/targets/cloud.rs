@@ -27,6 +27,7 @@ pub struct PointCloud {
 
 /// A cloud as a file says it.
 #[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Unchecked {
     dims: usize,
     points: Vec<f32>,

@@ -45,6 +45,7 @@ pub struct Density {
 
 /// A density as a file says it.
 #[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Unchecked {
     width: usize,
     height: usize,

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use crate::directions::cube_bank::{Block, Boundary};
 use crate::directions::{Directions, Laws};
 use crate::laws::Pieces;
+use crate::table::extent::bytes_of;
 use crate::transport::gather::Gather;
 use crate::transport::sort::{SHARED, SortBuffers};
 
@@ -18,6 +19,13 @@ pub(crate) struct LineBuffers {
     /// Positions by increasing projection.
     order: Vec<u32>,
     sort: SortBuffers,
+}
+
+impl LineBuffers {
+    /// Bytes that it holds.
+    pub(crate) fn bytes(&self) -> usize {
+        bytes_of(&self.projections) + bytes_of(&self.order) + self.sort.bytes()
+    }
 }
 
 /// Law of the projection on one direction.

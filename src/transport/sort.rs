@@ -2,6 +2,8 @@
 
 use rayon::prelude::*;
 
+use crate::table::extent::bytes_of;
+
 /// Above this many samples a sort is worth sharing between threads.
 pub(crate) const SHARED: usize = 1 << 17;
 
@@ -24,6 +26,10 @@ pub(super) struct SortBuffers {
 }
 
 impl SortBuffers {
+    pub(super) fn bytes(&self) -> usize {
+        bytes_of(&self.keys) + bytes_of(&self.entries) + bytes_of(&self.starts)
+    }
+
     /// Writes the positions of the projections by increasing value. These lie between `lowest` and `lowest +
     /// extent`, up to rounding.
     pub(super) fn sort(&mut self, projections: &[f32], (lowest, extent): (f64, f64), order: &mut [u32]) {

@@ -97,6 +97,8 @@ fn metadata(table: &SampleTable) -> Metadata {
             ended_early: true,
             steps: 4096,
             seconds: 12.75,
+            next_step: Some(65),
+            next_sweep: None,
         },
         ..Metadata::new(table.extent(), table.dims(), u64::MAX - 1, configuration)
     }

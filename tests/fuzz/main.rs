@@ -10,13 +10,15 @@ mod seeds;
 use std::env;
 use std::fs::File;
 use std::io::Write;
+use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use fsot::SampleTable;
 use fsot::files::{ImportOptions, Metadata};
+use fsot::optimizer::{Checkpoint, StepReport};
 use fsot::targets::{Density, Picture, Tone};
+use fsot::{Optimizer, SampleTable};
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -108,6 +110,44 @@ fn text_that_is_imported() {
 }
 
 #[test]
+fn sources_that_are_imported() {
+    let seeds = seeds::sources();
+    fuzz(
+        "mask.h",
+        3000,
+        |random| mutate::source(random, &seeds),
+        |path, random| {
+            let usual = SampleTable::import(path, &ImportOptions::default());
+            let chosen = SampleTable::import(path, &mutate::options(random));
+            [usual, chosen].into_iter().flatten().any(|imported| is_table(&imported.table))
+        },
+    );
+}
+
+/// What stands beside files is no safer than what is in them.
+#[test]
+fn descriptions_and_records() {
+    let home = tempfile::tempdir().unwrap();
+    let [text, record] = seeds::exported(home.path());
+    for (name, seed, file) in [("alone.raw.txt", text, "alone.raw"), ("mask.bin.json", record, "mask.bin")] {
+        fuzz(
+            name,
+            2000,
+            |random| mutate::json(random, &seed),
+            |path, random| {
+                // The damaged one among the sound files.
+                let place = home.path().join(name);
+                std::fs::copy(path, &place).unwrap();
+                let options = mutate::options(random);
+                let options = if name.ends_with("json") { ImportOptions::default() } else { options };
+                let imported = SampleTable::import(home.path().join(file), &options);
+                imported.is_ok_and(|imported| is_table(&imported.table))
+            },
+        );
+    }
+}
+
+#[test]
 fn metadata() {
     let home = tempfile::tempdir().unwrap();
     let (table, json) = seeds::metadata(home.path());
@@ -124,6 +164,32 @@ fn metadata() {
             let pair = SampleTable::load_with(&path);
             assert_eq!(read.is_ok_and(|metadata| metadata.check(&table).is_ok()), pair.is_ok());
             pair.is_ok_and(|(found, _)| found == table)
+        },
+    );
+}
+
+/// With the right hash too, which is no signature.
+#[test]
+fn checkpoints() {
+    let (config, seeds) = seeds::checkpoints();
+    fuzz(
+        "run.checkpoint",
+        2000,
+        |random| mutate::checkpoint(random, &seeds),
+        |path, _| {
+            let Ok(checkpoint) = Checkpoint::load(path) else { return false };
+            let (_, _) = (is_table(&checkpoint.table()), checkpoint.config());
+            let mut optimizer = Optimizer::new(config.clone()).unwrap();
+            if optimizer.resume(checkpoint).is_ok() {
+                let mut steps = 0;
+                let few = |_: &StepReport| {
+                    steps += 1;
+                    if steps < 3 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+                };
+                optimizer.finish_observed(few).unwrap();
+                is_table(&optimizer.table());
+            }
+            true
         },
     );
 }

@@ -4,6 +4,7 @@
 use fsot::files::{Axis, ImportOptions};
 use rand::RngExt;
 use rand_xoshiro::Xoshiro256PlusPlus;
+use sha2::{Digest, Sha256};
 
 use crate::seeds::npy;
 
@@ -260,6 +261,36 @@ fn crc(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(u32::MAX, |crc, &byte| (0..8).fold(crc ^ u32::from(byte), step))
 }
 
+/// A checkpoint whose header says something else, with the hash of that; or any damage.
+pub fn checkpoint(random: &mut Random, seeds: &[Vec<u8>]) -> Vec<u8> {
+    if random.random_bool(0.1) {
+        return bytes(random, seeds);
+    }
+    let whole = pick(random, seeds);
+    let begin = whole.iter().position(|byte| *byte == b'\n').unwrap() + 1;
+    let (length, rest) = whole[begin..].split_first_chunk().unwrap();
+    let (header, lists) = rest.split_at(u64::from_le_bytes(*length) as usize);
+    let mut header = String::from_utf8(header.to_vec()).unwrap();
+    for _ in 0..random.random_range(1..=3) {
+        let numbers: Vec<_> = header.match_indices(|c: char| c.is_ascii_digit()).map(|(at, _)| at).collect();
+        let at = *pick(random, &numbers);
+        let number =
+            ["0", "1", "9", "-1", "18446744073709551615", "1e300", "null", "4294967296", "2147483648"];
+        header.replace_range(at..=at, *pick(random, &number[..]));
+    }
+    let mut lists = lists[..lists.len() - 32].to_vec();
+    if random.random_bool(0.3) {
+        damage(random, &mut lists, seeds);
+    }
+    let mut bytes = whole[..begin].to_vec();
+    bytes.extend((header.len() as u64).to_le_bytes());
+    bytes.extend(header.as_bytes());
+    bytes.extend(lists);
+    let hash = Sha256::digest(&bytes);
+    bytes.extend(hash.as_slice());
+    bytes
+}
+
 /// Any options at all.
 pub fn options(random: &mut Random) -> ImportOptions {
     let mut length = || -> Option<usize> {
@@ -271,5 +302,55 @@ pub fn options(random: &mut Random) -> ImportOptions {
     let count = if named { random.random_range(0..=5) } else { 0 };
     let axes = (0..count).map(|_| *pick(random, &Axis::ALL)).collect();
     let levels = random.random_bool(0.2).then(|| *pick(random, &[0, 1, 2, 24, 256, 1 << 40, u64::MAX]));
-    ImportOptions { axes, levels, frames, height, width, spp, dims }
+    let channels = random.random_bool(0.1).then(|| *pick(random, &[0, 1, 2, 3, 4, usize::MAX]));
+    let types = ["u1", "<u2", ">u2", "<f2", "<f4", ">f4", "<f8", "i1", "b1"];
+    let dtype = random.random_bool(0.1).then(|| pick(random, &types).parse().expect("a type"));
+    let array = random.random_bool(0.1).then(|| (*pick(random, &["a", "mask", ""])).into());
+    ImportOptions { axes, levels, frames, height, width, spp, dims, channels, dtype, array }
+}
+
+/// C of which half the time only words are changed.
+pub fn source(random: &mut Random, seeds: &[Vec<u8>]) -> Vec<u8> {
+    if random.random() {
+        return bytes(random, seeds);
+    }
+    let mut text = String::from_utf8_lossy(&pick(random, seeds)[..]).into_owned();
+    let among = [
+        "{",
+        "}",
+        "},",
+        "{{",
+        "[",
+        "]",
+        "(",
+        ",",
+        ";",
+        "=",
+        "-",
+        "+",
+        "/*",
+        "*/",
+        "//",
+        "\n",
+        "\\\n",
+        "#",
+        "#define FSOT_A_FRAMES 3\n",
+        "#define FSOT_A_DIMS 99999999999999999999\n",
+        "\"",
+        "'",
+        "0x",
+        "0x1p-1f",
+        "1e400",
+        "08",
+        ".5f",
+        "0.99999999f",
+        "65536",
+        "nan",
+        "float a[]",
+        "uint16_t BlueNoiseTextures[2][3][4]",
+        "BlueNoiseTextures",
+        "\u{e9}",
+    ];
+    words(random, &mut text, &among);
+    text.into_bytes()
 }

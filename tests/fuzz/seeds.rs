@@ -1,12 +1,15 @@
 //! Sound files, small ones, which are then damaged.
 
 use std::fs;
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use exr::prelude::*;
-use fsot::files::{BoundEstimate, BoundRecord, KernelTaps, Metadata};
+use fsot::config::{Descent, Work};
+use fsot::files::{BoundEstimate, BoundRecord, Depth, ExportOptions, Format, KernelTaps, Metadata};
 use fsot::kernel::Tap;
-use fsot::{Config, Extent, SampleTable};
+use fsot::optimizer::StepReport;
+use fsot::{Config, Extent, Optimizer, SampleTable, Until};
 use png::{BitDepth, ColorType};
 
 /// A `.npy` file with this dictionary, whose length need not be right.
@@ -17,6 +20,22 @@ pub fn npy(version: u8, dictionary: &str, values: &[u8]) -> Vec<u8> {
         _ => length.to_le_bytes().to_vec(),
     };
     [b"\x93NUMPY", &[version, 0][..], &length, dictionary.as_bytes(), values].concat()
+}
+
+/// Of a frame, of slices with moments and of sweeps, all of one run; and what it optimises.
+pub fn checkpoints() -> (Config, Vec<Vec<u8>>) {
+    let config = Config::new(Extent::animation(2, 4, 4), 2).with_descent(Descent::sgd());
+    let mut optimizer = Optimizer::new(config.clone()).unwrap();
+    let mut seeds = Vec::new();
+    let work = Work { frame_sweeps: 2, slices_per_class: 32, sweeps: 1 };
+    let observe = |step: &StepReport| {
+        let mut bytes = Vec::new();
+        step.checkpoint().write(&mut bytes).unwrap();
+        seeds.push(bytes);
+        ControlFlow::Continue(())
+    };
+    optimizer.run_observed(Until::Work(work), observe).unwrap();
+    (config, seeds)
 }
 
 /// Arrays of all types, orders and numbers of axes.
@@ -52,6 +71,35 @@ pub fn texts() -> Vec<Vec<u8>> {
     ]
     .map(String::into_bytes)
     .to_vec()
+}
+
+/// C and C++, ours and others'.
+pub fn sources() -> Vec<Vec<u8>> {
+    let home = tempfile::tempdir().unwrap();
+    let table = SampleTable::white_noise(Extent::animation(2, 3, 4), 2, 1).unwrap();
+    let written = |format: Format, name: &str, depth: Depth| {
+        let options = ExportOptions { depth: Some(depth), ..ExportOptions::new(format) };
+        table.export(home.path().join(name), &options).unwrap();
+        fs::read(home.path().join(name)).unwrap()
+    };
+    let list = (0..16).map(|rank| format!("{},", rank * 5 % 16)).collect::<String>();
+    vec![
+        written(Format::C, "a.h", Depth::F32),
+        written(Format::C, "b.h", Depth::U8),
+        written(Format::Pbrt, "c.cpp", Depth::U16),
+        format!("// ranks\nstatic const unsigned char mask[4][4] = {{{list}}};\n").into_bytes(),
+        b"int a[2] = {4, 4}; const float mask[] = {{0.25f, 1e-3f}, {0x1p-1f, .5F}};".to_vec(),
+    ]
+}
+
+/// Bare numbers with the text beside them, and with the record of their export.
+pub fn exported(folder: &Path) -> [Vec<u8>; 2] {
+    let table = SampleTable::white_noise(Extent::animation(2, 3, 4).with_spp(2), 5, 1).unwrap();
+    for (format, name) in [(Format::Raw, "alone.raw"), (Format::Fast, "mask.bin")] {
+        table.export(folder.join(name), &ExportOptions::new(format)).unwrap();
+    }
+    fs::remove_file(folder.join("alone.raw.json")).unwrap();
+    ["alone.raw.txt", "mask.bin.json"].map(|name| fs::read(folder.join(name)).unwrap())
 }
 
 /// A table, and its metadata with everything in them.

@@ -15,7 +15,9 @@ fn raw_numbers_lie_where_the_text_says() {
         for depth in [Depth::U8, Depth::U16, Depth::F32] {
             let home = export(&table, "mask.raw", Format::Raw, depth);
             let bytes = fs::read(&home.path).unwrap();
-            let text = fs::read_to_string(home.home.path().join("mask.raw.txt")).unwrap();
+            let text_path = home.home.path().join("mask.raw.txt");
+            assert_eq!(home.exported.files, [home.path.clone(), text_path.clone()]);
+            let text = fs::read_to_string(text_path).unwrap();
             let index =
                 format!("[(((frame * {height} + y) * {width} + x) * {spp} + sample) * {dims} + dim]\n");
             assert!(text.contains(&index), "{text}");
@@ -51,6 +53,20 @@ fn raw_numbers_are_read_by_their_text_and_by_options() {
     }
 }
 
+#[test]
+fn halves_are_the_nearest_below_one() {
+    let table = table((Extent::animation(2, 8, 8), 3));
+    let home = export(&table, "mask.raw", Format::Raw, Depth::Half);
+    let read = home.import(&ImportOptions::default()).table;
+    // Eleven bits: half a unit of the last one at most, and 1 - 2^-11 at the end.
+    for (read, value) in read.values().iter().zip(table.values()) {
+        let unit = 2.0_f32.powi((value.log2().floor() as i32).max(-14) - 10);
+        assert!((read - value).abs() <= 0.5 * unit || *read == 1.0 - 1.0 / 2048.0, "{value}: {read}");
+    }
+    let home = home.without_record();
+    assert_eq!(home.import(&ImportOptions::default()).table, read);
+}
+
 /// Other people's bytes: another byte order, other axes, a description by hand.
 #[test]
 fn a_description_by_hand_is_read() {
@@ -65,7 +81,7 @@ fn a_description_by_hand_is_read() {
     assert_eq!(imported.table.view()[[0, 2, 1, 0, 1]], (2000.0 * 21.0 + 0.5) / 65536.0);
     assert_eq!(
         imported.to_string(),
-        ">u2 of shape [2, 3, 4] as dim, y, x, 65536 levels as (v + 1/2) / 65536"
+        ">u2 of shape [1, 3, 4, 1, 2] as frame, y, x, sample, dim, 65536 levels as (v + 1/2) / 65536"
     );
     // In Fortran order, and without names.
     describe("dtype: >u2\nshape: 4 3 2\norder: Fortran\n");
@@ -103,7 +119,7 @@ fn fast_has_four_floats_a_texel() {
     }
 }
 
-/// Not one bit of a large table is lost by text or bytes.
+/// All formats in one folder, each with its own record.
 #[test]
 fn every_format_can_be_told_from_the_others() {
     let table = table((Extent::still(16, 16), 1));

@@ -57,21 +57,21 @@ fn headers_are_c_and_cpp() {
         for depth in [Depth::F32, Depth::U16, Depth::U8] {
             let home = export(&table, "mask.h", Format::C, depth);
             let decode = ["(k + 0.5f) / 256.0f", "(k + 0.5f) / 65536.0f", "", "k"][depth as usize];
+            let read = format!(
+                "size_t at = (((frame * {height} + y) * {width} + x) * {spp} + sample) * {dims} + dim;\n\
+                 float k = (float)fsot_mask_values[at], u = {decode};\n\
+                 size_t far = frame + FSOT_MASK_FRAMES, down = y + FSOT_MASK_HEIGHT;\n\
+                 size_t right = x + FSOT_MASK_WIDTH;\n\
+                 if (fwrite(&u, sizeof u, 1, stdout) != 1) return 1;\n\
+                 if (other(frame, y, x, sample, dim) != u) return 2;\n\
+                 if (fsot_mask_sample(far, down, right, sample + FSOT_MASK_SPP, dim + FSOT_MASK_DIMS) != u)\n\
+                 return 3;"
+            );
             let main = format!(
                 "#include \"mask.h\"\n#include \"mask.h\"\n#include <stdio.h>\n\
                  float other(size_t frame, size_t y, size_t x, size_t sample, size_t dim);\n\
                  int main(void) {{ {} return 0; }}\n",
-                loops(
-                    &table,
-                    &format!(
-                        "float k = (float)fsot_mask_values[(((frame * {height} + y) * {width} + x) * {spp} + sample) * {dims} + dim];\n\
-                     float u = {decode};\n\
-                     if (fwrite(&u, sizeof u, 1, stdout) != 1) return 1;\n\
-                     if (other(frame, y, x, sample, dim) != u) return 2;\n\
-                     if (fsot_mask_sample(frame + FSOT_MASK_FRAMES, y + FSOT_MASK_HEIGHT, x + FSOT_MASK_WIDTH, \
-                          sample + FSOT_MASK_SPP, dim + FSOT_MASK_DIMS) != u) return 3;"
-                    )
-                ),
+                loops(&table, &read),
             );
             let other = "#include \"mask.h\"\n\
                  float other(size_t frame, size_t y, size_t x, size_t sample, size_t dim);\n\
@@ -132,13 +132,12 @@ fn textures_of_pbrt_lie_x_first() {
     for table in small_shapes() {
         let [frames, height, width, spp, dims] = table.shape();
         let home = export(&table, "bluenoise.cpp", Format::Pbrt, Depth::U16);
-        let read = loops(
-            &table,
-            &format!(
-                "float u = (BlueNoiseTextures[(frame * {spp} + sample) * {dims} + dim][x][y] + 0.5f) / 65536.0f;\n\
+        let read = format!(
+            "size_t texture = (frame * {spp} + sample) * {dims} + dim;\n\
+             float u = (BlueNoiseTextures[texture][x][y] + 0.5f) / 65536.0f;\n\
              if (fwrite(&u, sizeof u, 1, stdout) != 1) return 1;"
-            ),
         );
+        let read = loops(&table, &read);
         let main = format!(
             "#include \"bluenoise.cpp\"\n#include <cstdio>\nusing namespace pbrt;\n\
                             int main() {{ {read} }}\n"
@@ -179,4 +178,25 @@ fn textures_of_pbrt_lie_x_first() {
             assert!(!output.status.success() && words.contains("set it in bluenoise.h"), "{words}");
         }
     }
+}
+
+/// Bare numbers within a program, without a source text of them: as the documents show it.
+#[cfg(target_os = "linux")]
+#[test]
+fn bare_numbers_are_assembled_into_a_program() {
+    let docs = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/formats.md")).unwrap();
+    let snippet = docs.split("```c\n").find(|part| part.starts_with("/* mask.raw in the program")).unwrap();
+    let snippet = snippet.split("```").next().unwrap();
+    let table = table((Extent::still(6, 5), 2));
+    let home = export(&table, "mask.raw", Format::Raw, Depth::U16);
+    let main = format!(
+        "#include <stdio.h>\n{snippet}\nint main(void) {{\n\
+         for (int at = 0; at < 60; ++at) {{ float u = (mask[at] + 0.5f) / 65536.0f;\n\
+         if (fwrite(&u, sizeof u, 1, stdout) != 1) return 1; }}\nreturn 0; }}\n"
+    );
+    fs::write(home.home.path().join("main.c"), main).unwrap();
+    let Some(bytes) = run(home.home.path(), &["cc", "-Wall", "-Wextra", "-Werror"], &["main.c"]) else {
+        return;
+    };
+    assert_read(&bytes, &table, Depth::U16, "assembled");
 }

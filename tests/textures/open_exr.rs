@@ -1,5 +1,5 @@
-//! A reader of unpacked OpenEXR files[^exr], as short as the format allows: a second opinion on the crate that
-//! writes them.
+//! A reader of unpacked OpenEXR files[^exr], as short as the format allows: a second opinion on the crate
+//! that writes them.
 //!
 //! [^exr]: <https://openexr.com/en/latest/OpenEXRFileLayout.html>
 
@@ -50,18 +50,17 @@ pub fn read(file: &[u8]) -> Vec<Part> {
     }
     bytes.take(usize::from(is_multipart));
     // Blocks are found by their places in the file, a block a line.
-    for part in 0..parts.len() {
-        let height = parts[part].height;
-        for line in 0..height {
+    for (number, part) in parts.iter_mut().enumerate() {
+        for line in 0..part.height {
             let place = u64::from_le_bytes(bytes.take(8).try_into().unwrap());
             let mut block = Bytes(&file[place as usize..]);
             if is_multipart {
-                assert_eq!(block.int(), part as i32);
+                assert_eq!(block.int(), number as i32);
             }
             assert_eq!(block.int(), line as i32);
             let length = block.int() as usize;
             let mut row = Bytes(block.take(length));
-            let Part { width, channels, list, .. } = &mut parts[part];
+            let Part { width, channels, list, .. } = &mut *part;
             for (name, size) in list {
                 for _ in 0..*width {
                     let mut number = [0; 4];

@@ -114,13 +114,17 @@ impl<R: Rng> Draw<R> {
             true => draw.pick(&[i32::MIN, i32::MAX, -100_000, 77]),
             false => draw.below(7) as i32 - 3,
         };
-        let spatial = match self.below(5) {
-            0 => SpatialKernel::Box { size_px: self.count(5) },
-            1 => SpatialKernel::Binomial { size_px: self.count(7) },
-            2 => SpatialKernel::Taps(self.list(6, |draw| {
+        let taps = |draw: &mut Self| {
+            draw.list(6, |draw| {
                 let [dy, dx] = [(); 2].map(|()| offset(draw));
                 SpatialTap { dy, dx, weight: draw.number(0.0, 1.0) }
-            })),
+            })
+        };
+        let spatial = match self.below(6) {
+            0 => SpatialKernel::Box { size_px: self.count(5) },
+            1 => SpatialKernel::Binomial { size_px: self.count(7) },
+            2 => SpatialKernel::Taps(taps(self)),
+            3 => SpatialKernel::PerFrame(self.list(3, taps)),
             _ => SpatialKernel::Gaussian { sigma_px: self.number(0.3, 6.0) },
         };
         let temporal = match self.below(9) {

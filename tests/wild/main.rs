@@ -4,6 +4,7 @@
 
 mod draw;
 mod odd;
+mod written;
 
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -1,5 +1,5 @@
-//! Pages to draw on.
+//! Pictures.
 
-pub mod canvas;
+pub mod chart;
 pub mod page;
 pub mod raster;

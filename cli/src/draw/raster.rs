@@ -21,6 +21,11 @@ pub type Grey = Raster<1>;
 /// Of pixels in red, green and blue.
 pub type Color = Raster<3>;
 
+/// The 8-bit level of a brightness in `[0, 1]`; others are clamped.
+pub fn grey(brightness: f64) -> u8 {
+    (brightness.clamp(0.0, 1.0) * 255.0).round() as u8
+}
+
 impl<const SAMPLES: usize> Raster<SAMPLES> {
     const COLOR: ColorType = match SAMPLES {
         1 => ColorType::Grayscale,
@@ -54,6 +59,11 @@ impl<const SAMPLES: usize> Raster<SAMPLES> {
         self.pixels.as_flattened()
     }
 
+    /// All pixels, row by row.
+    pub fn pixels(&self) -> &[[u8; SAMPLES]] {
+        &self.pixels
+    }
+
     /// A pixel to change; `None` outside of the picture.
     pub fn pixel_mut(&mut self, x: usize, y: usize) -> Option<&mut [u8; SAMPLES]> {
         if x < self.width { self.pixels.get_mut(y * self.width + x) } else { None }
@@ -74,6 +84,16 @@ impl<const SAMPLES: usize> Raster<SAMPLES> {
     pub fn save(&self, path: &Path) -> Result<(), Failure> {
         self.write_png(path)
             .map_err(|error| format!("cannot write {}: {error}; choose another --out", path.display()).into())
+    }
+
+    /// The bytes of a PNG file.
+    ///
+    /// # Errors
+    /// A picture without pixels.
+    pub fn to_png(&self) -> io::Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        self.encode(&mut bytes)?;
+        Ok(bytes)
     }
 
     fn encode(&self, out: &mut impl Write) -> io::Result<()> {

@@ -23,8 +23,12 @@ Examples:
       by other names, of 16 bits
   fsot export table.npy --to ktx2 --bits half --out mask.ktx2
       a texture with a layer for each frame
+  fsot export table.npy --to c --bits 16 --out mask.h
+      a header for C99 and C++ with an array and a function that reads it
+  fsot export table.npy --to raw --bits 8 --out mask.raw
+      bare numbers, and mask.raw.txt, which says what they are; large tables are no headers
   fsot import mask.ktx2 --out table.npy
-      and back
+      and back, as from every format
 
 A texture holds one sample of a pixel and up to four dimensions; more samples go to files _s0, _s1 and so on,
 more dimensions to _d0-3, _d4-7 and so on. How to read the files lies beside them, under the name that is

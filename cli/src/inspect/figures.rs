@@ -1,17 +1,15 @@
 //! What is measured of a table, and how it is said to programs.
 
-use std::path::Path;
-
-use fsot::config::DimensionGroup;
+use fsot::config::{DimensionGroup, Role};
 use fsot::files::{BoundEstimate, Metadata};
 use fsot::metrics::{
     Bias, Bound, Discrepancy, Estimate, FaceDensity, FilteredError, Integrands, Marginal, Ratios, Spectra,
 };
-use fsot::{Config, Extent, Objective};
+use fsot::{Config, Extent, Objective, SampleTable};
 use serde_json::{Map, Value, json};
 
 use super::evenness::Evenness;
-use super::{Beside, Inspection};
+use super::{Beside, Effort, Inspection};
 use crate::Failure;
 
 /// Cycles per pixel below which a frequency counts as low; the default filter halves the power at 0.09.
@@ -19,9 +17,6 @@ pub const LOW: f64 = 0.1;
 
 /// Bins of a single dimension.
 pub const BINS: usize = 64;
-
-/// Pairs of samples whose comparison takes some ten seconds.
-const MOST_PAIRS: u64 = 10_000_000_000;
 
 /// What is measured of one dimension group.
 pub struct GroupFigures {
@@ -44,21 +39,25 @@ pub struct GroupFigures {
 
 impl GroupFigures {
     pub fn measure(inspection: &Inspection, dims: Vec<usize>) -> Result<Self, Failure> {
-        let Inspection { table, kernel, .. } = inspection;
+        let Inspection { table, kernel, seed, effort, .. } = inspection;
         let extent = table.extent();
-        let integrands = Integrands::random(dims.len(), inspection.integrands, inspection.seed)?;
-        let errors = FilteredError::measure(table, &dims, &integrands, kernel)?;
-        let bias = Bias::measure(table, &dims, &integrands)?;
+        let random = |count| Integrands::random(dims.len(), count, *seed);
+        let integrands = random(effort.integrands)?;
+        let errors = match effort.frames {
+            Some(frames) => FilteredError::measure_frames(table, &dims, &integrands, kernel, frames)?,
+            None => FilteredError::measure(table, &dims, &integrands, kernel)?,
+        };
+        let bias = Bias::measure(table, &dims, &random(effort.of_bias)?)?;
         let evenness = Evenness::new(table, &dims[..dims.len().min(2)])?;
         let marginals = dims.iter().map(|&dim| Marginal::measure(table, dim, BINS));
         let marginals = marginals.collect::<Result<_, _>>()?;
         let per_frame = (extent.samples() / extent.frames) as u64;
         let pairs = per_frame.saturating_mul(per_frame).saturating_mul((extent.frames * dims.len()) as u64);
-        let discrepancy = match pairs {
-            0..=MOST_PAIRS => Some(Discrepancy::measure(table, &dims)?.ratio_to_white_noise),
-            _ => None,
+        let discrepancy = match pairs <= effort.most_pairs {
+            true => Some(Discrepancy::measure(table, &dims)?.ratio_to_white_noise),
+            false => None,
         };
-        let spectra = Spectra::measure(table, &dims, &integrands)?;
+        let spectra = spectra(table, &dims, &integrands, effort)?;
         let low = Some(spectra.low_frequency_share(LOW)).filter(|low| low.is_finite());
         Ok(Self {
             animated: extent.frames > 1,
@@ -74,7 +73,7 @@ impl GroupFigures {
         })
     }
 
-    fn json(&self) -> Value {
+    pub fn json(&self) -> Value {
         let Self { dims, animated, errors, bias, evenness, marginals, discrepancy, spectra, low, .. } = self;
         let of_frames = |figure: &Ratios| animated.then(|| ratios(figure));
         let histogram = (dims.len() <= 2 && evenness.per_side > 1).then(|| {
@@ -108,12 +107,52 @@ impl GroupFigures {
     }
 }
 
+/// Spectra of the whole table, or of some frames and some rows of it at equal distances.
+pub fn spectra(
+    table: &SampleTable,
+    dims: &[usize],
+    integrands: &Integrands,
+    effort: &Effort,
+) -> Result<Spectra, Failure> {
+    let Extent { frames, height, .. } = table.extent();
+    let [of_frames, of_rows] = effort.slabs;
+    if of_frames >= frames && (of_rows >= height || frames == 1) {
+        return Ok(Spectra::measure(table, dims, integrands)?);
+    }
+    let spread = |all: usize, few: usize| (0..all.min(few)).map(move |k| k * all / all.min(few));
+    let of_frames = part(table, spread(frames, of_frames), 0..height)?;
+    let mut spectra = Spectra::measure(&of_frames, dims, integrands)?;
+    if frames > 1 {
+        spectra.xt =
+            Spectra::measure(&part(table, 0..frames, spread(height, of_rows))?, dims, integrands)?.xt;
+    }
+    Ok(spectra)
+}
+
+/// A table of some frames and some rows.
+fn part(
+    table: &SampleTable,
+    frames: impl ExactSizeIterator<Item = usize>,
+    rows: impl ExactSizeIterator<Item = usize> + Clone,
+) -> Result<SampleTable, Failure> {
+    let extent = table.extent();
+    let row = extent.width * extent.spp * table.dims();
+    let part = Extent { frames: frames.len(), height: rows.len(), ..extent };
+    let starts = frames.flat_map(|frame| rows.clone().map(move |y| (frame * extent.height + y) * row));
+    let values = starts.flat_map(|start| &table.values()[start..start + row]).copied().collect();
+    Ok(SampleTable::new(part, table.dims(), values)?)
+}
+
 /// The objective of `Term::blue_noise` for this shape and filter, at the table.
 pub fn bound(inspection: &Inspection, groups: &[DimensionGroup]) -> Result<BoundEstimate, Failure> {
-    let Inspection { table, kernel, bound_slices, seed, .. } = inspection;
-    let config = Config::new(table.extent(), table.dims()).with_groups(groups).with_kernel(kernel.clone());
+    let Inspection { table, kernel, seed, effort, .. } = inspection;
+    let mut config =
+        Config::new(table.extent(), table.dims()).with_groups(groups).with_kernel(kernel.clone());
+    if !effort.balance {
+        config.terms.retain(|term| term.role == Role::Descend);
+    }
     let objective = Objective::new(&config)?;
-    Ok(Bound::measure(table, &objective, *seed, *bound_slices)?.total)
+    Ok(Bound::measure(table, &objective, *seed, effort.bound_slices)?.total)
 }
 
 /// Everything, for `--json`; what was not measured is `null`.
@@ -122,9 +161,8 @@ pub fn json(
     beside: &Beside,
     groups: &[GroupFigures],
     bound: &BoundEstimate,
-    page: Option<&Path>,
 ) -> Value {
-    let Inspection { name, table, kernel, integrands, seed, .. } = inspection;
+    let Inspection { name, table, kernel, seed, effort, .. } = inspection;
     let Extent { frames, height, width, spp } = table.extent();
     let metadata = match beside {
         Beside::Nothing => Value::Null,
@@ -145,12 +183,11 @@ pub fn json(
         "name": name,
         "shape": [frames, height, width, spp, table.dims()],
         "kernel": kernel,
-        "integrands": integrands,
+        "integrands": effort.integrands,
         "seed": seed,
         "metadata": metadata,
         "groups": groups.iter().map(GroupFigures::json).collect::<Vec<_>>(),
         "bound": bound,
-        "page": page.map(|page| page.display().to_string()),
     })
 }
 

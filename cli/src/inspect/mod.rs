@@ -1,15 +1,11 @@
-//! `fsot inspect`: says what a sample table is worth, in figures and on one page of pictures.
+//! `fsot inspect`: says what a sample table is worth, in figures.
 //!
 //! Prints shape, metadata, filtered error, bias, uniformity, low frequencies and the bound, as ratios to
-//! white noise of the same shape. The page shows a table and white noise side by side: the error of one
-//! integrand, before and after the filter, its spectrum, and the samples themselves.
+//! white noise of the same shape. [`report`](crate::report) shows them on a page with pictures.
 
-mod evenness;
-mod figures;
-mod integrand;
-mod page;
-mod panels;
-mod report;
+pub(crate) mod evenness;
+pub(crate) mod figures;
+mod words;
 
 use std::path::{Path, PathBuf};
 
@@ -20,71 +16,99 @@ use fsot::kernel::{SpatialKernel, TemporalKernel};
 use fsot::{Kernel, SampleTable};
 
 use self::figures::GroupFigures;
-pub(crate) use self::report::shape;
+pub(crate) use self::words::{filter, shape, temporal_flag};
 use crate::console::Console;
-use crate::output::{self, Output};
 use crate::{Ended, Failure, Shared, temporal};
+
+/// Pairs of samples whose comparison takes some ten seconds.
+const MOST_PAIRS: u64 = 10_000_000_000;
 
 const EXAMPLES: &str = "\
 Examples:
   fsot inspect table.npy
-      figures, and a page of pictures in table.inspect.png
-  fsot inspect table.npy --sigma 1.5 --temporal ema:0.1 --out page.png
-      under another filter than the default
-  fsot inspect table.npy --no-page --json | jq .bound.ratio_to_white_noise
+      all figures, under the filter exp(-r^2/2.1^2) and, where there are frames, the eye's at 60 Hz
+  fsot inspect table.npy --sigma 1.5 --temporal ema:0.1
+      under another filter
+  fsot inspect table.npy --json | jq .bound.ratio_to_white_noise
       one figure for a script
 
-A signal ends it at once; the page is written whole or not at all.
+fsot report draws a page of a table, or of several. A signal ends it at once.
 Exit codes: 0 done, 1 refused or failed, 2 bad command line.";
 
-/// Measures a sample table against white noise of the same shape, and draws a page of it.
+/// Measures a sample table against white noise of the same shape.
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES, allow_negative_numbers = true)]
 pub struct Arguments {
     /// The table: a .npy file with axes [frame, y, x, sample, dim].
     path: PathBuf,
-    /// Where to write the page [default: beside the table, as NAME.inspect.png].
-    #[arg(long, value_name = "PNG")]
-    out: Option<PathBuf>,
-    /// Do not draw the page.
-    #[arg(long, conflicts_with = "out")]
-    no_page: bool,
     /// Test integrands per family. 256 leave a standard error of about 2 % in the mean.
     #[arg(long, default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=65536))]
     integrands: u32,
-    /// none, gaussian:SIGMA, ema:ALPHA, box:N, binomial:N, perceptual:FPS or taps:a,b,… with the current
-    /// frame first [default: perceptual:60; none for a single frame].
-    #[arg(long, value_parser = temporal::parse)]
-    temporal: Option<TemporalKernel>,
-    /// Width of the spatial Gaussian exp(-r²/sigma²), in pixels.
-    #[arg(long, default_value_t = 2.1)]
-    sigma: f64,
     /// Slices per term of the bound, fewer for large subsets. The default leaves a standard error of about
     /// half a percent.
     #[arg(long, default_value_t = 16_384, value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
     bound_slices: u32,
-    /// Names the integrands, the slices of the bound and the white noise that is shown.
-    #[arg(long, default_value_t = 0)]
-    seed: u64,
+    #[command(flatten)]
+    yardstick: Yardstick,
     #[command(flatten)]
     shared: Shared,
 }
 
+/// Under what tables are measured.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct Yardstick {
+    /// none, gaussian:SIGMA, ema:ALPHA, box:N, binomial:N, perceptual:FPS or taps:a,b,… with the current
+    /// frame first [default: perceptual:60; none for a single frame].
+    #[arg(long, value_parser = temporal::parse)]
+    pub temporal: Option<TemporalKernel>,
+    /// Width of the spatial Gaussian exp(-r²/sigma²), in pixels.
+    #[arg(long, default_value_t = 2.1)]
+    pub sigma: f64,
+    /// Names the integrands, the slices of the bound and white noise.
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+}
+
+impl Yardstick {
+    /// The filter of a table of so many frames.
+    pub fn kernel(&self, frames: usize) -> Kernel {
+        let temporal = temporal::or_default(self.temporal.as_ref(), frames);
+        Kernel::product(SpatialKernel::Gaussian { sigma_px: self.sigma }, temporal)
+    }
+}
+
 /// A table and how it is looked at.
-struct Inspection {
+pub(crate) struct Inspection {
     /// Of the file, without its folder.
-    name: String,
-    table: SampleTable,
-    kernel: Kernel,
+    pub name: String,
+    pub table: SampleTable,
+    pub kernel: Kernel,
+    pub seed: u64,
+    pub effort: Effort,
+}
+
+/// How much is spent on the figures.
+#[derive(Clone, Copy)]
+pub(crate) struct Effort {
     /// Test integrands per family.
-    integrands: usize,
+    pub integrands: usize,
+    /// The same for biases, which take all samples whatever else does.
+    pub of_bias: usize,
+    /// Frames whose filtered errors are averaged; all if `None`.
+    pub frames: Option<usize>,
+    /// Frames of the spectrum in x and y, and rows of that in x and t.
+    pub slabs: [usize; 2],
+    /// Pairs of samples that a discrepancy may compare.
+    pub most_pairs: u64,
     /// Slices per term of the bound.
-    bound_slices: usize,
-    seed: u64,
+    pub bound_slices: usize,
+    /// Whether terms that balance whole frames and the whole table count in the bound. Of many samples they
+    /// take nearly all of the time, and nearly no part of the sum.
+    pub balance: bool,
 }
 
 /// What lies beside the table.
-enum Beside {
+pub(crate) enum Beside {
     Nothing,
     Unusable(TableError),
     /// Metadata of another table.
@@ -94,7 +118,7 @@ enum Beside {
 }
 
 impl Beside {
-    fn find(path: &Path, table: &SampleTable) -> Self {
+    pub fn find(path: &Path, table: &SampleTable) -> Self {
         if !Metadata::path_beside(path).exists() {
             return Self::Nothing;
         }
@@ -109,7 +133,8 @@ impl Beside {
 }
 
 impl Inspection {
-    fn sigma(&self) -> f64 {
+    /// Width of the spatial Gaussian.
+    pub fn sigma(&self) -> f64 {
         match self.kernel.spatial {
             SpatialKernel::Gaussian { sigma_px } => sigma_px,
             _ => f64::NAN,
@@ -122,22 +147,23 @@ impl Inspection {
 /// # Errors
 /// Whatever stands against it, in one sentence.
 pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
-    let Arguments { path, integrands, bound_slices, sigma, seed, shared, .. } = arguments;
+    let Arguments { path, integrands, bound_slices, yardstick, shared } = arguments;
     let table = SampleTable::load(path)?;
-    let beside = Metadata::path_beside(path);
-    let page = arguments.page();
-    if let Some(page) = &page {
-        let output = Output { flag: "--out", path: page, endings: &["png"] };
-        output::check(&[output], &[path, &beside])?;
-    }
-    let temporal = temporal::or_default(arguments.temporal.as_ref(), table.extent().frames);
+    let integrands = *integrands as usize;
     let inspection = Inspection {
         name: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+        kernel: yardstick.kernel(table.extent().frames),
         table,
-        kernel: Kernel::product(SpatialKernel::Gaussian { sigma_px: *sigma }, temporal),
-        integrands: *integrands as usize,
-        bound_slices: *bound_slices as usize,
-        seed: *seed,
+        seed: yardstick.seed,
+        effort: Effort {
+            integrands,
+            of_bias: integrands,
+            frames: None,
+            slabs: [usize::MAX; 2],
+            most_pairs: MOST_PAIRS,
+            bound_slices: *bound_slices as usize,
+            balance: true,
+        },
     };
     // A bad kernel is found out before anything is said.
     inspection.kernel.taps(&inspection.table.extent())?;
@@ -145,30 +171,18 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
 
     let mut console = Console::new(shared);
     let metadata = Beside::find(path, &inspection.table);
-    console.say(|out| report::header(out, &inspection));
-    console.say(|out| report::metadata(out, &metadata));
-    console.say(report::key);
+    console.say(|out| words::header(out, &inspection));
+    console.say(|out| words::metadata(out, &metadata));
+    console.say(words::key);
     let dims = DimensionGroup::pairs_and_whole(inspection.table.dims());
     let mut groups = Vec::new();
     for group in &dims {
         let measured = GroupFigures::measure(&inspection, group.dims.clone())?;
-        console.say(|out| report::group(out, &measured));
+        console.say(|out| words::group(out, &measured));
         groups.push(measured);
     }
     let bound = figures::bound(&inspection, &dims)?;
-    console.say(|out| report::bound(out, &bound));
-    if let (Some(page), Some(first)) = (&page, groups.first()) {
-        page::draw(&inspection, first)?.save(page)?;
-        console.say(|out| writeln!(out, "page: {}", page.display()));
-    }
-    console.figures(&figures::json(&inspection, &metadata, &groups, &bound, page.as_deref()));
+    console.say(|out| words::bound(out, &bound));
+    console.figures(&figures::json(&inspection, &metadata, &groups, &bound));
     console.end(Ended::Done)
-}
-
-impl Arguments {
-    /// Where the page is drawn, if it is.
-    fn page(&self) -> Option<PathBuf> {
-        let page = || self.out.clone().unwrap_or_else(|| self.path.with_extension("inspect.png"));
-        (!self.no_page).then(page)
-    }
 }

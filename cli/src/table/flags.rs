@@ -1,13 +1,15 @@
 //! The flags of `fsot table`, and what they mean to the library.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
-use fsot::config::{Descent, DimensionGroup, Domain, Work};
-use fsot::kernel::{SpatialKernel, TemporalKernel};
-use fsot::{Config, Extent, Kernel, Until};
+use clap::{Arg, Args, ValueEnum};
+use fsot::config::Domain;
+use fsot::kernel::TemporalKernel;
 
-use crate::{Shared, temporal};
+use super::reading;
+use super::recipe::{DescentName, Recipe};
+use super::values::{self, Domains, Groups, KernelSource, Temporal};
+use crate::{Failure, Shared, checkpoint, temporal};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -17,6 +19,15 @@ Examples:
       a still table of two independent pairs of numbers, such as a point on a light and one on a lens
   fsot table --frames 16 --temporal ema:0.1 --seed 7
       for temporal antialiasing that keeps nine tenths of its history
+  fsot table --kernel denoiser.npy --dry-run
+      for a filter of your own weights; what the run would take, without running it
+  fsot table --config table.json --out again.npy
+      the same bits again; flags change single things: --config table.json --seed 8
+  fsot table --config render.toml --log run.csv
+      as a file says, which docs/configuration.md explains; `fsot plot run.csv` draws how it went
+  fsot table --spp 16 --checkpoint run.checkpoint --every 30s --out table.npy
+  fsot table --resume run.checkpoint --out table.npy
+      the same bits, also if the first was killed; what the checkpoint holds can't be given again
 
 numpy.load reads the table: float32 in [0, 1), axes [frame, y, x, sample, dim].
 
@@ -26,37 +37,48 @@ Exit codes: 0 done, 1 refused or failed, 2 bad command line, 3 ended early by a 
 
 /// Optimises a table of random numbers so that a renderer's error is blue noise in space and time.
 #[derive(Args, Debug)]
-#[command(after_help = EXAMPLES, allow_negative_numbers = true)]
+#[command(after_help = EXAMPLES, allow_negative_numbers = true, mut_arg("resume", alone))]
 pub struct Arguments {
-    /// Columns of a frame, in pixels.
-    #[arg(long, default_value_t = 64)]
-    width: usize,
-    /// Rows of a frame, in pixels.
-    #[arg(long, default_value_t = 64)]
-    height: usize,
-    /// Frames; the animation wraps.
-    #[arg(long, default_value_t = 10)]
-    frames: usize,
-    /// Samples per pixel.
-    #[arg(long, default_value_t = 1)]
-    spp: usize,
-    /// Dimensions per sample, at most 64.
-    #[arg(long, default_value_t = 2)]
-    dims: usize,
-    /// Width of the spatial Gaussian exp(-r²/sigma²), in pixels.
-    #[arg(long, default_value_t = 2.1)]
-    sigma: f64,
+    /// A file that says all this: TOML, or the metadata of a table, whose bits are made again; flags override
+    /// what it says.
+    #[arg(long, value_name = "TOML|JSON")]
+    config: Option<PathBuf>,
+    /// Columns of a frame, in pixels [default: 64].
+    #[arg(long)]
+    width: Option<usize>,
+    /// Rows of a frame, in pixels [default: 64].
+    #[arg(long)]
+    height: Option<usize>,
+    /// Frames; the animation wraps [default: 10].
+    #[arg(long)]
+    frames: Option<usize>,
+    /// Samples per pixel [default: 1].
+    #[arg(long)]
+    spp: Option<usize>,
+    /// Dimensions per sample, at most 64 [default: 2].
+    #[arg(long)]
+    dims: Option<usize>,
+    /// Width of the spatial Gaussian exp(-r²/sigma²), in pixels [default: 2.1].
+    #[arg(long)]
+    sigma: Option<f64>,
+    /// Weights of another filter: an array [y, x], or [frame, y, x] with the current frame first, or rows of
+    /// numbers; odd sides are centred, even ones reach one pixel further right and down.
+    #[arg(long, value_name = "NPY|CSV", conflicts_with = "sigma")]
+    kernel: Option<PathBuf>,
     /// none, gaussian:SIGMA, ema:ALPHA, box:N, binomial:N, perceptual:FPS or taps:a,b,… with the current
     /// frame first [default: perceptual:60; none for a single frame].
     #[arg(long, value_parser = temporal::parse)]
     temporal: Option<TemporalKernel>,
     /// Dimension groups with weights, as in "0,1:1;2,3:1;0-3:0.5" [default: consecutive pairs, and the whole
     /// at half their weight].
-    #[arg(long, value_parser = parse_groups)]
+    #[arg(long, value_parser = values::groups)]
     groups: Option<Groups>,
-    /// Whether a dimension ends or wraps.
-    #[arg(long, value_enum, default_value_t = DomainName::Interval)]
-    domain: DomainName,
+    /// A list of terms, for what these flags don't say (docs/configuration.md).
+    #[arg(long, value_name = "TOML|JSON", conflicts_with_all = ["sigma", "kernel", "temporal", "groups"])]
+    terms: Option<PathBuf>,
+    /// Whether a dimension ends or wraps [default: interval].
+    #[arg(long, value_enum)]
+    domain: Option<DomainName>,
     /// How slices move the samples [default: barycentric].
     #[arg(long, value_enum)]
     optimizer: Option<DescentName>,
@@ -75,15 +97,25 @@ pub struct Arguments {
     /// Time for the optimisation alone, instead of an amount of work.
     #[arg(long)]
     seconds: Option<f64>,
+    /// Print what the run would take, and don't run: work, terms, memory, and the time that it is expected to
+    /// take here.
+    #[arg(long)]
+    pub(super) dry_run: bool,
+    /// Where to write how the run goes, as .csv, while it goes: step, seconds, step size, displacement, loss,
+    /// and now and then filtered error and bias.
+    #[arg(long, value_name = "CSV")]
+    pub(super) log: Option<PathBuf>,
     /// Do not measure the bound before and after.
     #[arg(long)]
     pub(super) no_bound: bool,
-    /// Names every random number: the same seed gives the same bits.
-    #[arg(long, default_value_t = 0)]
-    seed: u64,
+    /// Names every random number: the same seed gives the same bits [default: 0].
+    #[arg(long)]
+    seed: Option<u64>,
     /// Where to write the table, as .npy; its metadata goes beside it, as .json.
     #[arg(long, default_value = "table.npy", value_name = "NPY")]
     pub(super) out: PathBuf,
+    #[command(flatten)]
+    pub(super) checkpoint: checkpoint::Arguments,
     #[command(flatten)]
     pub(super) shared: Shared,
 }
@@ -94,83 +126,69 @@ enum DomainName {
     Torus,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum DescentName {
-    Barycentric,
-    Adam,
-    Sgd,
-}
-
-#[derive(Clone, Debug)]
-struct Groups(Vec<DimensionGroup>);
-
 impl Arguments {
-    /// How long the run is.
-    pub(super) fn until(&self) -> Until {
-        if let Some(seconds) = self.seconds {
-            return Until::Seconds(seconds);
-        }
-        let slices_only = self.optimizer.is_some() || matches!(self.domain, DomainName::Torus);
-        let slices = if slices_only { Some(320) } else { None };
-        match (self.slices_per_class.or(slices), self.sweeps, self.frame_sweeps) {
-            (None | Some(0), None, _) => Until::Usual,
-            (None, Some(sweeps), None) => Until::Sweeps(sweeps),
-            (slices, sweeps, frame_sweeps) => Until::Work(Work {
-                frame_sweeps: frame_sweeps.unwrap_or(0),
-                slices_per_class: slices.unwrap_or(0),
-                sweeps: sweeps.unwrap_or(0),
+    /// What the table is to be, by all files and flags.
+    ///
+    /// # Errors
+    /// A file that cannot be read or understood; flags that cannot override it.
+    pub(super) fn recipe(&self) -> Result<Recipe, Failure> {
+        let flags = Recipe {
+            width: self.width,
+            height: self.height,
+            frames: self.frames,
+            spp: self.spp,
+            dims: self.dims,
+            sigma: self.sigma,
+            kernel: self.kernel.clone().map(KernelSource::File),
+            temporal: self.temporal.clone().map(Temporal),
+            groups: self.groups.clone(),
+            terms: self.terms.as_deref().map(reading::terms).transpose()?,
+            domain: self.domain.map(|domain| match domain {
+                DomainName::Interval => Domains::All(Domain::Interval),
+                DomainName::Torus => Domains::All(Domain::Torus),
             }),
+            optimizer: self.optimizer,
+            seed: self.seed,
+            seconds: self.seconds,
+            slices_per_class: self.slices_per_class,
+            sweeps: self.sweeps,
+            frame_sweeps: self.frame_sweeps,
+            ..Recipe::default()
+        };
+        match &self.config {
+            Some(path) => flags.over(reading::recipe(path)?, path),
+            None => Ok(flags),
         }
     }
 
-    /// What is optimised.
-    pub(super) fn config(&self) -> Config {
-        let Arguments { width, height, frames, spp, dims, sigma, .. } = *self;
-        let extent = Extent { frames, height, width, spp };
-        let temporal = temporal::or_default(self.temporal.as_ref(), frames);
-        let kernel = Kernel::product(SpatialKernel::Gaussian { sigma_px: sigma }, temporal);
-        let groups = match &self.groups {
-            Some(Groups(groups)) => groups.clone(),
-            None => DimensionGroup::pairs_and_whole(dims),
-        };
-        let domain = match self.domain {
-            DomainName::Interval => Domain::Interval,
-            DomainName::Torus => Domain::Torus,
-        };
-        let descent = match self.optimizer {
-            None | Some(DescentName::Barycentric) => Descent::barycentric(),
-            Some(DescentName::Adam) => Descent::adam(),
-            Some(DescentName::Sgd) => Descent::sgd(),
-        };
-        Config::new(extent, dims)
-            .with_domain(domain)
-            .with_groups(&groups)
-            .with_kernel(kernel)
-            .with_descent(descent)
-            .with_seed(self.seed)
+    /// Files that are read.
+    pub(super) fn inputs(&self) -> Vec<&Path> {
+        let files = [&self.config, &self.kernel, &self.terms].into_iter().flatten();
+        files.map(PathBuf::as_path).chain(self.checkpoint.input()).collect()
     }
 }
 
-fn parse_groups(text: &str) -> Result<Groups, String> {
-    text.split(';').map(parse_group).collect::<Result<_, _>>().map(Groups)
-}
-
-/// A group such as `0,1`, `0-3:0.5` or `0,2-4:1`.
-fn parse_group(text: &str) -> Result<DimensionGroup, String> {
-    // Dimensions beyond any table would only make the list long.
-    const MOST: usize = 1 << 16;
-    let malformed = || format!("'{text}' is no dimension group: write for example 0,1:1 or 0-3:0.5");
-    let (list, weight) = text.split_once(':').unwrap_or((text, "1"));
-    let weight = weight.trim().parse().map_err(|_| malformed())?;
-    let mut dims = Vec::new();
-    for item in list.split(',') {
-        let (first, last) = item.split_once('-').unwrap_or((item, item));
-        let [first, last] =
-            [first, last].map(|dim| dim.trim().parse::<usize>().ok().filter(|&dim| dim < MOST));
-        match (first, last) {
-            (Some(first), Some(last)) if first <= last => dims.extend(first..=last),
-            _ => return Err(malformed()),
-        }
-    }
-    Ok(DimensionGroup { dims, weight })
+/// What is resumed has been told all this.
+fn alone(resume: Arg) -> Arg {
+    resume.conflicts_with_all([
+        "config",
+        "kernel",
+        "terms",
+        "dry_run",
+        "width",
+        "height",
+        "frames",
+        "spp",
+        "dims",
+        "sigma",
+        "temporal",
+        "groups",
+        "domain",
+        "optimizer",
+        "slices_per_class",
+        "sweeps",
+        "frame_sweeps",
+        "seconds",
+        "seed",
+    ])
 }

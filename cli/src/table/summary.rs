@@ -39,7 +39,7 @@ impl Summary {
     /// For people.
     pub fn words(&self, to: &mut dyn Write) -> io::Result<()> {
         let Self { out, metadata, run, bound, bound_left_out, .. } = self;
-        let RunRecord { seconds, steps, frame_sweeps, slices_per_class, sweeps, ended_early } = run;
+        let RunRecord { seconds, steps, frame_sweeps, slices_per_class, sweeps, ended_early, .. } = run;
         let ended = if *ended_early { format!("stopped after {steps} steps of ") } else { String::new() };
         let frame = if *frame_sweeps > 0 { format!("--frame-sweeps {frame_sweeps} ") } else { String::new() };
         writeln!(

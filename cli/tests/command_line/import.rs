@@ -29,9 +29,8 @@ fn shell(home: &Path, line: &str) -> Output {
 fn followed(name: &str, bytes: &[u8]) -> SampleTable {
     let home = tempdir().unwrap();
     fs::write(home.path().join(name), bytes).unwrap();
-    let inspected = command(home.path(), "inspect --no-page --integrands 2 --bound-slices 64")
-        .arg(format!("./{name}"))
-        .output();
+    let inspected =
+        command(home.path(), "inspect --integrands 2 --bound-slices 64").arg(format!("./{name}")).output();
     let (out, err) = texts(&inspected.unwrap());
     assert!(
         out.is_empty() && err.lines().count() == 1 && err.matches('`').count() == 2,
@@ -154,7 +153,7 @@ fn import_says_what_it_took_for_what() {
     run(home.path(), "table --width 2 --height 2 --frames 1 --dims 1 --quiet");
     let (out, _) = run(home.path(), "import mask.dat --out table.npy");
     assert!(out.ends_with("table.json is of another table\n"), "{out}");
-    let (out, _) = run(home.path(), "inspect table.npy --no-page --integrands 2 --bound-slices 64");
+    let (out, _) = run(home.path(), "inspect table.npy --integrands 2 --bound-slices 64");
     assert!(out.contains("metadata: NOT OF THIS TABLE") && out.contains("SHA-256"), "{out}");
 
     let refused = |arguments: &str, code: i32, words: &str| {

@@ -1,11 +1,17 @@
 //! `fsot` as a user meets it: files, words, exit codes.
 
+mod configurations;
+mod export;
 mod import;
+mod kernels;
+mod logs;
 mod mistakes;
 mod outputs;
 mod pictures;
+mod plans;
 mod points;
 mod printing;
+mod resuming;
 mod runs;
 #[cfg(unix)]
 mod signals;

@@ -82,16 +82,16 @@ fn what_is_read_is_not_overwritten() {
     let home = home();
     let stipple = "points stipple --picture ./picture.png --slices 100000000";
     refused(home.path(), &format!("{stipple} --out picture.png"), "would overwrite what is read");
-    fs::copy(home.path().join("picture.png"), home.path().join("table.inspect.png")).unwrap();
     let table = SampleTable::white_noise(Extent::still(4, 4), 2, 0).unwrap();
     table.save(home.path().join("table.npy")).unwrap();
-    refused(home.path(), "inspect table.npy --out table.npy", "ends in .png");
+    refused(home.path(), "report table.npy --out table.npy", "ends in .html or .htm");
+    refused(home.path(), "report table.npy --png table.npy", "ends in .png");
     #[cfg(unix)]
     {
         std::os::unix::fs::symlink("picture.png", home.path().join("link.png")).unwrap();
         refused(home.path(), &format!("{stipple} --out link.png"), "would overwrite what is read");
         std::os::unix::fs::symlink("table.npy", home.path().join("table.png")).unwrap();
-        refused(home.path(), "inspect table.npy --out table.png", "would overwrite what is read");
+        refused(home.path(), "report table.npy --png table.png", "would overwrite what is read");
         fs::write(home.path().join("same.csv"), "").unwrap();
         std::os::unix::fs::symlink("same.csv", home.path().join("same.png")).unwrap();
         let both = "points two-class --slices 100000000 --out same.png --points same.csv";
@@ -129,7 +129,11 @@ fn a_full_disk_leaves_what_was_there() {
     run(home.path(), "table --frames 1 --sweeps 1 --no-bound");
     for (verb, files) in [
         ("table --frames 1 --sweeps 2 --no-bound", &["table.npy"][..]),
-        ("inspect table.npy --integrands 2 --bound-slices 64 --out page.png", &["page.png"]),
+        ("report table.npy --integrands 2 --bound-slices 64 --out page.html", &["page.html"]),
+        (
+            "report table.npy --integrands 2 --bound-slices 64 --out page.html --png page.png",
+            &["page.html", "page.png"],
+        ),
         ("import table.npy --out other.npy", &["other.npy"]),
         ("points two-class --counts 512,512 --slices 4 --no-comparison --out page.png", &["page.png"]),
         ("points stipple --picture picture.png --count 512 --slices 4 --points list.csv", &["list.csv"]),

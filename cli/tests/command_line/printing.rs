@@ -9,16 +9,15 @@ use tempfile::tempdir;
 
 use crate::{command, names, run, texts};
 
-const FEW: &str = "--integrands 2 --bound-slices 64";
-
 /// Short runs of all verbs; `picture.png` and `table.npy` are there.
-const SHORT: [&str; 6] = [
+const SHORT: [&str; 7] = [
     "table --width 8 --height 8 --frames 2 --sweeps 2 --out made.npy",
     "inspect table.npy --integrands 2 --bound-slices 64",
     "points two-class --counts 8,8 --slices 4",
     "points progressive --count 16 --slices 4 --integrands 2",
     "points stipple --picture picture.png --count 32 --slices 4",
     "points color-stipple --picture picture.png --count 32 --slices 4",
+    "report table.npy --integrands 2 --bound-slices 64",
 ];
 
 fn home() -> tempfile::TempDir {
@@ -61,10 +60,7 @@ fn json_holds_the_figures() {
 
     let inspected = json(home.path(), SHORT[1]);
     assert_eq!(inspected["shape"], serde_json::json!([2, 8, 8, 1, 2]));
-    assert_eq!(
-        (&inspected["groups"][0]["dims"], &inspected["page"]),
-        (&serde_json::json!([0, 1]), &"table.inspect.png".into())
-    );
+    assert_eq!(inspected["groups"][0]["dims"], serde_json::json!([0, 1]));
     let group = &inspected["groups"][0];
     for figure in ["unfiltered", "spatial", "spatio_temporal"] {
         assert!(group["error"][figure]["mean"]["ratio"].as_f64() > Some(0.0), "{group}");
@@ -75,6 +71,15 @@ fn json_holds_the_figures() {
     let spatial = format!("{:.4}", group["error"]["spatial"]["mean"]["ratio"].as_f64().unwrap());
     assert!(words.contains(&bound) && words.contains(&spatial), "{words}");
     assert_eq!(inspected["metadata"]["run"]["sweeps"], 2);
+    // All frames and samples of so small a table are measured for a page, too: the same figures.
+    let reported = json(home.path(), SHORT[6]);
+    assert_eq!((&reported["page"], &reported["png"]), (&"report.html".into(), &Value::Null));
+    for figure in ["shape", "kernel", "metadata", "bound"] {
+        assert_eq!(reported["tables"][0][figure], inspected[figure], "{figure}");
+    }
+    for figure in ["error", "bias", "histogram", "marginals", "squared_l2_discrepancy"] {
+        assert_eq!(reported["tables"][0]["groups"][0][figure], group[figure], "{figure}");
+    }
 
     let classes = json(home.path(), SHORT[2]);
     let class = &classes["figures"]["classes"][2];
@@ -106,13 +111,11 @@ fn quiet_is_silent_and_no_bar_is_drawn_into_a_file() {
 }
 
 #[test]
-fn no_page_is_drawn_if_none_is_wanted() {
+fn inspecting_writes_nothing() {
     let home = home();
-    let (out, _) = run(home.path(), &format!("inspect table.npy {FEW} --no-page"));
-    assert!(
-        !out.contains("page:") && names(home.path()) == ["picture.png", "table.json", "table.npy"],
-        "{out}"
-    );
+    let (out, _) = run(home.path(), SHORT[1]);
+    assert!(out.contains("bound "), "{out}");
+    assert_eq!(names(home.path()), ["picture.png", "table.json", "table.npy"]);
 }
 
 /// As `| head -1` does, or without reading anything at all.
@@ -137,8 +140,8 @@ fn a_reader_who_goes_away_is_no_failure() {
             "made.npy",
             "picture.png",
             "progressive.png",
+            "report.html",
             "stippling.png",
-            "table.inspect.png",
             "table.json",
             "table.npy",
             "two_class.png",
@@ -177,9 +180,10 @@ fn nobody_has_to_listen() {
     assert_eq!(shell("fsot table --width 8 --height 8 --sweeps 1 >&- 2>&-"), Some(0));
 }
 
-const VERBS: [&str; 7] = [
+const VERBS: [&str; 8] = [
     "table",
     "inspect",
+    "report",
     "points",
     "points two-class",
     "points progressive",
@@ -220,7 +224,7 @@ fn examples_are_understood() {
                 if file { format!("missing/{word}") } else { word.to_owned() }
             });
             let mut words: Vec<String> = words.collect();
-            if !words.iter().any(|word| word == "--out" || word == "--points" || word == "inspect") {
+            if !words.iter().any(|word| ["--out", "--points", "--png", "inspect"].contains(&word.as_str())) {
                 words.extend(["--out".into(), "missing/x".into()]);
             }
             let output = command(home.path(), &words.join(" ")).output().unwrap();

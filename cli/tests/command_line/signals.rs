@@ -26,7 +26,7 @@ fn start(home: &Path, arguments: &str) -> Child {
     run.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
-fn signal(child: &Child, signal: &str) {
+pub(super) fn signal(child: &Child, signal: &str) {
     let id = child.id().to_string();
     assert!(Command::new("kill").args([&format!("-{signal}"), &id]).status().unwrap().success());
 }
@@ -40,7 +40,7 @@ fn wait_until(what: &str, done: impl Fn() -> bool) {
 }
 
 /// Waits until signals are listened to: where the system tells, and else for long enough.
-fn listening(child: &Child) {
+pub(super) fn listening(child: &Child) {
     if !cfg!(target_os = "linux") {
         return sleep(Duration::from_secs(5));
     }

@@ -1,5 +1,6 @@
 //! Pictures of what was measured.
 
+pub mod canvas;
 mod exr;
 mod spectrum;
 mod srgb;

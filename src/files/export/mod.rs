@@ -135,7 +135,8 @@ impl SampleTable {
         });
         complete.push(beside.map_err(|error| cannot_write(&record_path, error))?);
         whole::commit_all(complete).map_err(|(path, error)| cannot_write(&path, error))?;
-        Ok(Exported { files: plan.into_iter().map(|(path, _)| path).collect(), record_path, record })
+        let files = plan.into_iter().map(|(path, _)| path).chain(text_path).collect();
+        Ok(Exported { files, record_path, record })
     }
 }
 
@@ -191,6 +192,7 @@ impl fmt::Display for Exported {
         let Self { files, record, .. } = self;
         match files.as_slice() {
             [file] => write!(out, "{}", file.display())?,
+            [first, second] => write!(out, "{} and {}", first.display(), second.display())?,
             [first, .., last] => {
                 write!(out, "{} files, {} to {}", files.len(), first.display(), last.display())?
             }

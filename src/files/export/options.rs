@@ -5,6 +5,8 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use crate::files::dtype::Dtype;
+
 /// A format that engines read, and that [`SampleTable::import`](crate::SampleTable::import) reads back.
 ///
 /// ```
@@ -244,6 +246,11 @@ impl Depth {
             Self::U16 => Some(1 << 16),
             Self::Half | Self::F32 => None,
         }
+    }
+
+    /// The type of the numbers, little-endian.
+    pub(in crate::files) fn dtype(self) -> Dtype {
+        [Dtype::U8, Dtype::U16, Dtype::HALF, Dtype::TABLE][self as usize]
     }
 
     /// Bytes of a number.

@@ -5,7 +5,6 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::encode::Encoded;
-use super::options::Depth;
 use super::parts::Part;
 use crate::files::metadata::AXES;
 
@@ -32,21 +31,12 @@ pub(super) fn write(out: &mut impl Write, values: &Encoded, part: &Part) -> io::
     Ok(())
 }
 
-/// The type of the numbers as numpy names it.
-fn dtype(depth: Depth) -> &'static str {
-    match depth {
-        Depth::U8 => "|u1",
-        Depth::U16 => "<u2",
-        Depth::Half => "<f2",
-        Depth::F32 => "<f4",
-    }
-}
-
 /// What is to be known of the numbers, a line each: `key: value`.
 pub(super) fn text(path: &Path, values: &Encoded, part: &Part) -> String {
     let shape = part.shape(values.extent());
     let [_, height, width, spp, dims] = shape;
-    let (depth, dtype) = (values.depth, dtype(values.depth));
+    let depth = values.depth;
+    let dtype = depth.dtype().to_string();
     let name = path.file_name().unwrap_or_default().to_string_lossy().replace(char::is_control, "?");
     let lengths = shape.map(|length| length.to_string()).join(", ");
     let index = format!("(((frame * {height} + y) * {width} + x) * {spp} + sample) * {dims} + dim");
@@ -56,7 +46,7 @@ pub(super) fn text(path: &Path, values: &Encoded, part: &Part) -> String {
     for (key, value) in [
         ("file", name.clone()),
         ("bytes", bytes.to_string()),
-        ("dtype", dtype.into()),
+        ("dtype", dtype.clone()),
         ("byte order", "little-endian".into()),
         ("axes", AXES.join(", ")),
         ("shape", lengths.clone()),

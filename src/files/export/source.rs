@@ -84,8 +84,8 @@ fn title(path: &Path, part: &Part, values: &Encoded) -> String {
     let [frames, height, width, spp, dims] = part.shape(values.extent());
     let name = path.file_name().unwrap_or_default().to_string_lossy().replace(char::is_control, "?");
     format!(
-        "{name}: {frames} frames of {width} x {height} pixels with {spp} samples of {dims} numbers in [0, 1), \
-         by fsot {}.",
+        "{name}: {frames} frames of {width} x {height} pixels with {spp} samples of {dims} numbers in \
+         [0, 1), by fsot {}.",
         env!("CARGO_PKG_VERSION")
     )
 }
@@ -117,6 +117,7 @@ pub(super) fn write_header(
         Depth::Half | Depth::F32 => ("float", "k"),
     };
     let count: usize = part.shape(values.extent()).iter().product();
+    let parameters = "size_t frame, size_t y, size_t x, size_t sample, size_t dim";
     write!(
         out,
         "/* {title}\n *\n *     float u = {name}_sample(frame, y, x, sample, dim);\n *\n \
@@ -128,7 +129,7 @@ pub(super) fn write_header(
     write!(
         out,
         "\n/* Place of a number in {name}_values: [frame][y][x][sample][dim], the last varies fastest. */\n\
-         static inline size_t {name}_index(size_t frame, size_t y, size_t x, size_t sample, size_t dim) {{\n    \
+         static inline size_t {name}_index({parameters}) {{\n    \
              size_t at = frame % {upper}_FRAMES;\n    \
              at = at * {upper}_HEIGHT + y % {upper}_HEIGHT;\n    \
              at = at * {upper}_WIDTH + x % {upper}_WIDTH;\n    \
@@ -147,7 +148,7 @@ pub(super) fn write_header(
     write!(
         out,
         "}};\n\n/* The number. */\n\
-         static inline float {name}_sample(size_t frame, size_t y, size_t x, size_t sample, size_t dim) {{\n    \
+         static inline float {name}_sample({parameters}) {{\n    \
              {kind} k = {name}_values[{name}_index(frame, y, x, sample, dim)];\n    \
              return {decoded};\n}}\n\n\
          #endif\n",
@@ -164,9 +165,8 @@ pub(super) fn write_pbrt(out: &mut impl Write, path: &Path, values: &Encoded, pa
     write!(
         out,
         "// {title}\n//\n\
-         // The blue-noise textures of pbrt-v4, [texture][x][y] with texture = (frame * {spp} + sample) *
-         // {dims} \
-         + dim:\n\
+         // The blue-noise textures of pbrt-v4, [texture][x][y] with\n\
+         //     texture = (frame * {spp} + sample) * {dims} + dim:\n\
          // in the place of src/pbrt/util/bluenoise.cpp, with the lengths below in bluenoise.h.{square}\n\
          // Level k stands for (k + 0.5) / 65536; pbrt takes k / 65535 for it, which is half a level off at \
          most.\n\

@@ -10,6 +10,7 @@ mod raw;
 mod recorded;
 mod set;
 mod source;
+mod written;
 
 use std::fmt;
 use std::io;

@@ -3,13 +3,13 @@
 use std::fs::{self, File};
 use std::path::Path;
 
-use super::super::dtype::Dtype;
-use super::super::export::raw::text_path;
-use super::super::header::shortened;
-use super::super::layout::Axis;
 use super::source::{Source, numbers};
 use super::{ImportOptions, Problem};
 use crate::error::{FormatError, ImportError};
+use crate::files::dtype::Dtype;
+use crate::files::export::raw::text_path;
+use crate::files::header::shortened;
+use crate::files::layout::Axis;
 
 /// Longest text that is taken for a description.
 const MOST_BYTES: u64 = 1 << 16;
@@ -24,19 +24,26 @@ pub(super) struct Described {
     fortran: bool,
 }
 
-/// What options or the text beside a file say; `None` if neither says a type.
-pub(super) fn described(path: &Path, options: &ImportOptions) -> Result<Option<Described>, ImportError> {
+/// What options say; `None` if they say no type.
+pub(super) fn by_options(path: &Path, options: &ImportOptions) -> Result<Option<Described>, ImportError> {
+    let Some(dtype) = options.dtype else { return Ok(None) };
+    Ok(Some(match by_text(path, options)? {
+        Some(described) => Described { dtype, ..described },
+        None => Described { dtype, shape: None, axes: Vec::new(), levels: None, fortran: false },
+    }))
+}
+
+/// What the text beside a file says; `None` if it says no type.
+pub(super) fn by_text(path: &Path, options: &ImportOptions) -> Result<Option<Described>, ImportError> {
     let beside = text_path(path);
     let is_text = fs::metadata(&beside).is_ok_and(|found| found.is_file() && found.len() <= MOST_BYTES);
     let text = if is_text { fs::read_to_string(&beside).unwrap_or_default() } else { String::new() };
-    let Some(described) = parse(&text) else {
-        let described = |dtype| Described { dtype, shape: None, axes: vec![], levels: None, fortran: false };
-        return Ok(options.dtype.map(described));
-    };
-    let mut described = described?;
-    described.dtype = options.dtype.unwrap_or(described.dtype);
+    let Some(mut described) = parse(&text).transpose()? else { return Ok(None) };
     if options.lengths().is_some() || options.channels.is_some() {
-        (described.shape, described.axes) = (None, Vec::new());
+        (described.shape, described.axes, described.fortran) = (None, Vec::new(), false);
+    }
+    if !options.axes.is_empty() {
+        described.axes = Vec::new();
     }
     Ok(Some(described))
 }
@@ -86,5 +93,7 @@ pub(super) fn read(file: File, bytes: u64, described: Described) -> Result<Sourc
         return Err(FormatError::Length { given: bytes, expected, shape }.into());
     }
     let values = numbers(file, count.unwrap_or(0), dtype)?;
-    Ok(Source { values, shape, axes, fortran, dtype: Some(dtype), levels, descr: dtype.to_string() })
+    let source =
+        Source { fortran, dtype: Some(dtype), levels, ..Source::of(values, shape, dtype.to_string()) };
+    if axes.is_empty() { Ok(source) } else { source.in_order(&axes) }
 }

@@ -6,8 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use super::super::dtype::Dtype;
-use super::super::export::{Depth, ExportRecord, Format, RecordedFile, fast};
+use super::super::export::{ExportRecord, Format, RecordedFile, fast};
 use super::super::header::shortened;
 use super::super::layout::Axis;
 use super::super::metadata;
@@ -126,14 +125,7 @@ fn one(piece: &Piece, record: &ExportRecord, extent: Extent) -> Result<Imported,
     let Extent { height, width, .. } = extent;
     let (frames, spp, dims) = (piece.frames.len(), piece.samples.len(), piece.dims.len());
     let [frames, height, width, spp, dims] = [frames, height, width, spp, dims].map(Some);
-    let dtype = match (record.format, record.bits) {
-        (Format::Fast, _) => Some(Dtype::TABLE),
-        (Format::Raw, Depth::U8) => Some(Dtype::U8),
-        (Format::Raw, Depth::U16) => Some(Dtype::U16),
-        (Format::Raw, Depth::Half) => Some(Dtype::HALF),
-        (Format::Raw, Depth::F32) => Some(Dtype::TABLE),
-        _ => None,
-    };
+    let dtype = matches!(record.format, Format::Fast | Format::Raw).then(|| record.bits.dtype());
     let channels = (record.format == Format::Fast).then_some(fast::CHANNELS);
     let levels = record.bits.levels().map(u64::from);
     let options = ImportOptions {

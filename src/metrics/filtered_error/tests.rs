@@ -136,3 +136,48 @@ fn the_number_of_threads_changes_nothing() {
     };
     assert_eq!(on(1), on(2));
 }
+
+/// All frames: the same to rounding, also for a filter that doesn't see the frame itself or has no symmetry.
+#[test]
+fn all_frames_one_by_one_are_the_whole() {
+    let extent = Extent { frames: 5, ..EXTENT };
+    let table = SampleTable::white_noise(extent, 3, 5).unwrap();
+    let lopsided = vec![
+        crate::kernel::SpatialTap { dy: 0, dx: 1, weight: 1.0 },
+        crate::kernel::SpatialTap { dy: -2, dx: 0, weight: 0.3 },
+    ];
+    let odd = Kernel { spatial: SpatialKernel::Taps(lopsided), ..kernel() };
+    let past = Kernel { temporal: TemporalKernel::Taps(vec![0.0, 0.5, 1.0]), ..odd.clone() };
+    let integrands = Integrands::random(2, 3, 8).unwrap();
+    for kernel in [kernel(), odd, past, Kernel::gaussian(2.1)] {
+        let whole = FilteredError::measure(&table, &[2, 0], &integrands, &kernel).unwrap();
+        let frames = FilteredError::measure_frames(&table, &[2, 0], &integrands, &kernel, 5).unwrap();
+        for (whole, frames) in stages(&whole).iter().zip(stages(&frames)) {
+            for (whole, frames) in whole.families.iter().zip(&frames.families) {
+                assert_relative_eq!(whole.ratio.mean, frames.ratio.mean, max_relative = 1e-11);
+            }
+        }
+    }
+}
+
+/// Two frames that are alike, of four: those two alone, or the other two.
+#[test]
+fn frames_are_taken_at_equal_distances() {
+    let extent = Extent { frames: 2, ..EXTENT };
+    let two = SampleTable::white_noise(extent, 2, 5).unwrap();
+    let [first, second] =
+        [0, 1].map(|half| &two.values()[half * two.values().len() / 2..][..EXTENT.samples() / 3 * 2]);
+    let four =
+        SampleTable::new(Extent { frames: 4, ..EXTENT }, 2, [first, second, first, second].concat()).unwrap();
+    let alone = SampleTable::new(Extent { frames: 1, ..EXTENT }, 2, first.to_vec()).unwrap();
+    let integrands = Integrands::random(2, 4, 8).unwrap();
+    let still = Kernel::gaussian(1.5);
+    let of_two = FilteredError::measure_frames(&four, &[0, 1], &integrands, &still, 2).unwrap();
+    let of_one = FilteredError::measure(&alone, &[0, 1], &integrands, &still).unwrap();
+    assert_relative_eq!(of_two.spatial.mean.mean, of_one.spatial.mean.mean, max_relative = 1e-11);
+    assert_relative_eq!(of_two.unfiltered.mean.mean, of_one.unfiltered.mean.mean, max_relative = 1e-11);
+    for frames in [0, 5] {
+        let error = FilteredError::measure_frames(&four, &[0, 1], &integrands, &still, frames).unwrap_err();
+        assert!(error.to_string().contains("the number of frames"), "{error}");
+    }
+}

@@ -1,7 +1,7 @@
 //! A labelled contact sheet: grey pictures in a grid.
 
-use fsot_cli::draw::canvas::{Canvas, LETTER, LINE, MARGIN, grey};
-use fsot_cli::draw::raster::Grey;
+use fsot_cli::draw::raster::{Grey, grey};
+use fsot_lab::draw::canvas::{Canvas, LETTER, LINE, MARGIN};
 use fsot_lab::draw::srgb;
 
 const ROWS: usize = 4;

@@ -1,7 +1,7 @@
 //! Contact sheets: what every sampler rendered, what is left after the filter, and the spectrum of its error.
 
-use fsot_cli::draw::canvas::{Canvas, LINE, MARGIN, grey};
-use fsot_cli::draw::raster::Grey;
+use fsot_cli::draw::raster::{Grey, grey};
+use fsot_lab::draw::canvas::{Canvas, LINE, MARGIN};
 use fsot_lab::render::{Film, ImageFilter, Scales, error_spectrum};
 
 use crate::Failure;

@@ -5,26 +5,22 @@ use fsot::metrics::{ErrorImage, Family, Integrand, Integrands};
 use fsot::{Extent, Kernel, SampleTable, Site};
 use rayon::prelude::*;
 
+use super::panels::LARGEST_SIDE;
 use crate::Failure;
-
-/// Pixels per side that a page has room for.
-pub const LARGEST_SIDE: usize = 384;
+use crate::draw::raster::{Grey, grey};
 
 /// Taps that are summed for a picture, within a second or so.
 const MOST_WORK: usize = 60_000_000;
 
-/// Error of the pixels in the upper left corner of the last frame.
-pub struct ErrorPictures {
-    pub columns: usize,
-    /// Whether the frame is larger.
-    pub cut: bool,
-    pub raw: Vec<f64>,
-    pub filtered: Vec<f64>,
-    /// Standard deviation of a pixel of white noise, before and after the filter.
-    pub white: [f64; 2],
+/// Error of the pixels in the upper left corner of the last frame; grey is none.
+pub struct Edge {
+    /// Black and white are two standard deviations of white noise.
+    pub before: Grey,
+    /// Black and white are three standard deviations of what the filter leaves of white noise.
+    pub after: Grey,
 }
 
-impl ErrorPictures {
+impl Edge {
     pub fn new(
         table: &SampleTable,
         dims: &[usize],
@@ -40,7 +36,7 @@ impl ErrorPictures {
         let sum: f64 = taps.iter().map(|tap| tap.weight).sum();
         let frame = frames - 1;
         let sites = (0..rows * columns).map(|i| Site { frame, y: i / columns, x: i % columns });
-        let raw = sites.clone().map(|site| errors[[site.frame, site.y, site.x]]).collect();
+        let raw: Vec<f64> = sites.clone().map(|site| errors[[site.frame, site.y, site.x]]).collect();
         let filtered_at = |site: Site| {
             let of_tap = |tap: &Tap| {
                 let at = extent.wrapped(site, (tap.dt.into(), tap.dy.into(), tap.dx.into()));
@@ -48,11 +44,14 @@ impl ErrorPictures {
             };
             taps.iter().map(of_tap).sum::<f64>()
         };
-        let filtered = sites.collect::<Vec<_>>().into_par_iter().map(filtered_at).collect();
+        let filtered: Vec<f64> = sites.collect::<Vec<_>>().into_par_iter().map(filtered_at).collect();
         let single = white_variance.sqrt();
         let shrunk = taps.iter().map(|tap| (tap.weight / sum).powi(2)).sum::<f64>().sqrt();
-        let cut = rows < height || columns < width;
-        Ok(Self { columns, cut, raw, filtered, white: [single, single * shrunk] })
+        let picture = |errors: &[f64], end: f64| {
+            Grey::from_fn(columns, rows, |x, y| [grey(0.5 + 0.5 * errors[y * columns + x] / end)])
+        };
+        let (before, after) = (picture(&raw, 2.0 * single), picture(&filtered, 3.0 * single * shrunk));
+        Ok(Self { before, after })
     }
 }
 

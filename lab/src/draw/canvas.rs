@@ -1,8 +1,7 @@
 //! A dark page to draw on: grey pictures, blocks and lines of text in a tiny bitmap font.
 
 use font8x8::{BASIC_FONTS, UnicodeFonts};
-
-use super::raster::Grey;
+use fsot_cli::draw::raster::Grey;
 
 /// Glyphs have 8 × 8 pixels and are drawn at this scale.
 const TEXT: usize = 2;
@@ -19,11 +18,6 @@ const PAPER: u8 = 24;
 #[derive(Clone, Debug)]
 pub struct Canvas {
     picture: Grey,
-}
-
-/// The 8-bit level of a brightness in `[0, 1]`; others are clamped.
-pub fn grey(brightness: f64) -> u8 {
-    (brightness.clamp(0.0, 1.0) * 255.0).round() as u8
 }
 
 impl Canvas {

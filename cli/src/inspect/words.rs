@@ -17,7 +17,7 @@ pub fn header(out: &mut dyn Write, inspection: &Inspection) -> io::Result<()> {
         out,
         "filter: {}; {} test integrands per family, seed {}",
         filter(inspection),
-        inspection.integrands,
+        inspection.effort.integrands,
         inspection.seed
     )?;
     Ok(())
@@ -35,18 +35,27 @@ pub fn shape(table: &SampleTable) -> String {
     )
 }
 
-/// The filter in words that a command line and a bitmap font can show.
+/// The filter in words that every terminal can show.
 pub fn filter(inspection: &Inspection) -> String {
     let space = format!("exp(-r^2/{}^2) in pixels", inspection.sigma());
-    match &inspection.kernel.temporal {
-        TemporalKernel::None => space,
-        TemporalKernel::Gaussian { sigma_frames } => format!("{space}, gaussian:{sigma_frames} in frames"),
-        TemporalKernel::Ema { alpha } => format!("{space}, ema:{alpha} in frames"),
-        TemporalKernel::Box { frames } => format!("{space}, box:{frames} in frames"),
-        TemporalKernel::Binomial { frames } => format!("{space}, binomial:{frames} in frames"),
-        TemporalKernel::Perceptual { fps } => format!("{space}, perceptual:{fps} in frames"),
-        other => format!("{space}, {} taps in frames", other.taps().map_or(0, |taps| taps.len())),
+    match (&inspection.kernel.temporal, temporal_flag(&inspection.kernel.temporal)) {
+        (TemporalKernel::None, _) => space,
+        (_, Some(flag)) => format!("{space}, {flag} in frames"),
+        (other, None) => format!("{space}, {} taps in frames", other.taps().map_or(0, |taps| taps.len())),
     }
+}
+
+/// A temporal kernel as it is written on a command line, if it isn't long.
+pub fn temporal_flag(temporal: &TemporalKernel) -> Option<String> {
+    Some(match temporal {
+        TemporalKernel::None => "none".into(),
+        TemporalKernel::Gaussian { sigma_frames } => format!("gaussian:{sigma_frames}"),
+        TemporalKernel::Ema { alpha } => format!("ema:{alpha}"),
+        TemporalKernel::Box { frames } => format!("box:{frames}"),
+        TemporalKernel::Binomial { frames } => format!("binomial:{frames}"),
+        TemporalKernel::Perceptual { fps } => format!("perceptual:{fps}"),
+        _ => return None,
+    })
 }
 
 /// What lies beside the table: nothing, its metadata or another table's, or something damaged.
