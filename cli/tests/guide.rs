@@ -8,7 +8,7 @@ use std::process::Command;
 fn quick(verb: &str) -> &'static [&'static str] {
     match verb {
         "table" => &["--width", "8", "--height", "8", "--sweeps", "1", "--no-bound", "--quiet"],
-        "inspect" => &["--integrands", "1", "--bound-slices", "16", "--no-page"],
+        "inspect" | "report" => &["--integrands", "1", "--bound-slices", "16"],
         _ => &[],
     }
 }
@@ -26,7 +26,7 @@ fn the_commands_of_the_guide_run() {
     let guide = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/choosing.md");
     let home = tempfile::tempdir().unwrap();
     let commands = commands(&fs::read_to_string(guide).unwrap());
-    for verb in ["table", "inspect", "export"] {
+    for verb in ["table", "inspect", "report", "export"] {
         assert!(commands.iter().any(|command| command[0] == verb), "the guide has no {verb}");
     }
     for command in commands {

@@ -13,6 +13,7 @@ use super::files::Places;
 use crate::console::{self, Console};
 use crate::log::Log;
 use crate::progress::Progress;
+use crate::run::Course;
 use crate::{Ended, Failure, Shared, advice, run};
 
 /// Points that a run has made.
@@ -57,9 +58,9 @@ pub fn make(config: Config, slices: u64, progress: &Progress, log: Option<&Path>
     let mut optimizer = planned.map_err(|error| advised(error.into()))?;
     progress.end_planning();
     let planning_seconds = begin.elapsed().as_secs_f64();
-    let until = Until::SlicesPerClass(slices);
-    let mut log = log.map(|path| Log::new(path, optimizer.config())).transpose()?;
-    let report = run::watched(&mut optimizer, until, progress, |step| {
+    let course = Course::New(Until::SlicesPerClass(slices));
+    let mut log = log.map(|path| Log::new(path, optimizer.config(), false)).transpose()?;
+    let report = run::watched(&mut optimizer, course, progress, |step, _| {
         log.iter_mut().for_each(|log| log.step(step));
         ControlFlow::Continue(())
     });

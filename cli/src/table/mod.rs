@@ -105,8 +105,8 @@ fn start(arguments: &Arguments) -> Result<Option<Start>, Failure> {
     }
     let recipe = arguments.recipe()?;
     if recipe.steps.is_some() && checkpoint.output().is_some() {
-        let complaint = "the run that --config makes again had ended early, which a checkpoint does not know: \
-                         leave out --checkpoint";
+        let complaint = "the run that --config makes again had ended early, which a checkpoint does not \
+                         know: leave out --checkpoint";
         return Err(complaint.into());
     }
     shared.start_threads()?;

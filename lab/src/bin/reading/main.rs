@@ -63,8 +63,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if of(&still) != of(&table) {
         let [(spp, dims), (other_spp, other_dims)] = [of(&table), of(&still)];
         return Err(format!(
-            "the table has {spp} samples of {dims} numbers a pixel, the still one {other_spp} of {other_dims}: \
-             give a --still of the same"
+            "the table has {spp} samples of {dims} numbers a pixel, the still one {other_spp} of \
+             {other_dims}: give a --still of the same"
         )
         .into());
     }
@@ -75,18 +75,18 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let dims = arguments.dims.clone().unwrap_or_else(all);
     let measure = Measure::new(dims, arguments)?;
     let source = Source { table: &table, still: &still };
-
-    println!(
-        "{} frames, {uses} use(s) of {} number(s), {spp} sample(s) per pixel; squared errors as ratios to white noise",
-        extent.frames,
-        table.dims()
-    );
-    println!("{:48} {:>9} {:>9} {:>9} {:>9}", "read", "one frame", "one pixel", "filtered", "all");
     let ways = Way::all(&source, extent.frames, uses).into_iter();
     let ways: Vec<Way> = ways.filter(|way| way.name.starts_with(&arguments.way)).collect();
     if ways.is_empty() {
         return Err(format!("no way begins with {:?}: leave out --way to see all", arguments.way).into());
     }
+
+    println!(
+        "{} frames, {uses} use(s) of {} number(s), {spp} sample(s) per pixel; ratios to white noise",
+        extent.frames,
+        table.dims()
+    );
+    println!("{:48} {:>9} {:>9} {:>9} {:>9}", "read", "one frame", "one pixel", "filtered", "all");
     for way in ways {
         let read = way.read(&source, extent, uses)?;
         let [frame, pixel, both, all] = measure.errors(&read)?;
