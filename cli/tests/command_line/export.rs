@@ -57,8 +57,8 @@ fn what_levels_cost_is_one_line_a_figure() {
     assert_eq!(err, "");
     let lines: Vec<&str> = out.lines().collect();
     let [files, record, error, bias, evenness] = lines[..] else { panic!("{out}") };
-    let expected = "4 files, stbn_vec2_2Dx1D_16x16x4_0.png to stbn_vec2_2Dx1D_16x16x4_3.png: slices of [frame, \
-                    y, x, sample, dim] = [4, 16, 16, 1, 2], 8 bits, k stands for (k + 0.5) / 256";
+    let expected = "4 files, stbn_vec2_2Dx1D_16x16x4_0.png to stbn_vec2_2Dx1D_16x16x4_3.png: slices \
+                    of [frame, y, x, sample, dim] = [4, 16, 16, 1, 2], 8 bits, k stands for (k + 0.5) / 256";
     assert_eq!((files, record), (expected, "stbn.png.json: how to read it"));
     assert!(error.starts_with("filtered error under its own kernel: 0."), "{error}");
     assert!(bias.starts_with("bias: 0."), "{bias}");
