@@ -15,6 +15,9 @@ use crate::{Failure, temporal};
 /// Samples times integrands of a family: a second's work.
 const MOST_WORK: usize = 1 << 21;
 
+/// Dimensions that are measured at most: two pairs.
+const MOST_DIMS: usize = 4;
+
 /// More than this share of the filtered error is worth a word.
 const MUCH: f64 = 0.02;
 
@@ -28,6 +31,10 @@ pub(super) struct Loss {
     rounding: Rounding,
     /// Whether the kernel is the table's own.
     own_kernel: bool,
+    /// Dimensions that were measured, the first of the table.
+    dims: usize,
+    /// Whether there are more.
+    is_part: bool,
     before: Figures,
     after: Figures,
 }
@@ -62,12 +69,17 @@ impl Loss {
         });
         let before = Figures::measure(table, &kernel, depth)?;
         let after = Figures::measure(&table.quantized(depth, rounding), &kernel, depth)?;
-        Ok(Self { depth, rounding, own_kernel, before, after })
+        let dims = table.dims().min(MOST_DIMS);
+        let is_part = dims < table.dims();
+        Ok(Self { depth, rounding, own_kernel, dims, is_part, before, after })
     }
 
     /// One line for each figure.
     pub(super) fn words(&self, to: &mut dyn Write) -> io::Result<()> {
-        let Self { depth, own_kernel, before, after, .. } = self;
+        let Self { depth, own_kernel, dims, is_part, before, after, .. } = self;
+        if *is_part {
+            writeln!(to, "of the first {dims} dimensions:")?;
+        }
         let change = |before: f64, after: f64| 100.0 * (after / before - 1.0);
         let worst = before
             .families
@@ -117,7 +129,7 @@ impl Figures {
     fn measure(table: &SampleTable, kernel: &Kernel, depth: Depth) -> Result<Self, MeasureError> {
         let samples = table.extent().samples();
         let per_family = (MOST_WORK / samples).clamp(4, 64);
-        let dims: Vec<usize> = (0..table.dims().min(4)).collect();
+        let dims: Vec<usize> = (0..table.dims().min(MOST_DIMS)).collect();
         let pairs: Vec<&[usize]> = dims.chunks(2).collect();
         let (mut filtered_error, mut bias) = (0.0, 0.0);
         let mut families: Vec<(String, f64)> = Vec::new();
