@@ -21,7 +21,9 @@ Examples:
   fsot plot sweeps.csv slices.csv --out curves.svg
       filtered error, loss and displacement of both runs over their time
 
-A log may be drawn while its run goes on.
+  fsot plot run.csv
+      one run, to curves.svg, also while it goes on
+
 Exit codes: 0 done, 1 refused or failed, 2 bad command line.";
 
 /// Draws what the logs of runs say: filtered error, loss and displacement over the time.

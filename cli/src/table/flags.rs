@@ -21,13 +21,11 @@ Examples:
       for temporal antialiasing that keeps nine tenths of its history
   fsot table --kernel denoiser.npy --dry-run
       for a filter of your own weights; what the run would take, without running it
-  fsot table --config table.json --out again.npy
-      the same bits again; flags change single things: --config table.json --seed 8
-  fsot table --config render.toml --log run.csv
-      as a file says, which docs/configuration.md explains; `fsot plot run.csv` draws how it went
-  fsot table --spp 16 --checkpoint run.checkpoint --every 30s --out table.npy
-  fsot table --resume run.checkpoint --out table.npy
-      the same bits, also if the first was killed; what the checkpoint holds can't be given again
+  fsot table --config table.json --out again.npy --log run.csv
+      the same bits again, or a TOML file of your own (docs/configuration.md); flags change single things;
+      'fsot plot run.csv' draws how it went
+  fsot table --spp 16 --checkpoint run.checkpoint --every 30s
+      a run that may be killed; then --resume run.checkpoint goes on to the same bits
 
 numpy.load reads the table: float32 in [0, 1), axes [frame, y, x, sample, dim].
 
