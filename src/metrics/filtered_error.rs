@@ -135,8 +135,8 @@ impl Meter {
     }
 }
 
-/// Twice the sums over frequencies of the power of an image's real and of its imaginary part, from its Fourier
-/// transform, with each frequency's power changed by the factors of real kernels.
+/// Twice the sums over frequencies of the power of an image's real and of its imaginary part, from its
+/// Fourier transform, with each frequency's power changed by the factors of real kernels.
 fn sums_of_squares<const STAGES: usize>(
     image: &[Complex64],
     mirrors: &[u32],

@@ -13,8 +13,8 @@ use crate::metrics::{Integrands, MeasureError, Ratios, Samples};
 use crate::table::extent::Extent;
 
 impl FilteredError {
-    /// The same as [`measure`](Self::measure), averaged over `frames` frames at equal distances instead of all
-    /// of them, each filtered in space and time as in the whole animation.
+    /// The same as [`measure`](Self::measure), averaged over `frames` frames at equal distances instead of
+    /// all of them, each filtered in space and time as in the whole animation.
     ///
     /// A long animation has more frames than an average needs: integrands count, of which more can be
     /// afforded. Cost per integrand: O(samples · dims) to evaluate the frames that the filter sees, and
