@@ -180,7 +180,7 @@ fn nobody_has_to_listen() {
     assert_eq!(shell("fsot table --width 8 --height 8 --sweeps 1 >&- 2>&-"), Some(0));
 }
 
-const VERBS: [&str; 8] = [
+const VERBS: [&str; 9] = [
     "table",
     "plot",
     "inspect",
