@@ -180,8 +180,10 @@ fn nobody_has_to_listen() {
     assert_eq!(shell("fsot table --width 8 --height 8 --sweeps 1 >&- 2>&-"), Some(0));
 }
 
-const VERBS: [&str; 9] = [
+const VERBS: [&str; 11] = [
     "table",
+    "export",
+    "import",
     "plot",
     "inspect",
     "report",
