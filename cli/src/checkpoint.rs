@@ -13,6 +13,8 @@ use crate::output::{self, Output};
 
 /// Where checkpoints are written, and how often.
 #[derive(Args, Clone, Debug)]
+// The arguments of the verb are a group of the same name.
+#[group(skip)]
 pub struct Arguments {
     /// Write all that the rest of the run depends on to this file, again and again, so that a run that was
     /// killed can be resumed with the same bits [default: the file of --resume].
