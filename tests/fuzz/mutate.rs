@@ -276,7 +276,8 @@ pub fn checkpoint(random: &mut Random, seeds: &[Vec<u8>]) -> Vec<u8> {
         let at = *pick(random, &numbers);
         let number =
             ["0", "1", "9", "-1", "18446744073709551615", "1e300", "null", "4294967296", "2147483648"];
-        header.replace_range(at..=at, *pick(random, &number[..]));
+        let other: &str = pick::<&str>(random, &number);
+        header.replace_range(at..=at, other);
     }
     let mut lists = lists[..lists.len() - 32].to_vec();
     if random.random_bool(0.3) {
