@@ -201,7 +201,7 @@ fn help_has_examples_and_exit_codes_everywhere() {
         let (out, _) = run(home.path(), &format!("{verb} --help"));
         let (_, examples) = out.split_once("Examples:\n").expect(verb);
         let lines = examples.lines().filter(|line| line.starts_with(&format!("  fsot {verb}"))).count();
-        assert!((2..=6).contains(&lines), "{verb}: {lines}");
+        assert!((2..=8).contains(&lines), "{verb}: {lines}");
         assert!(examples.contains("Exit codes: 0 done, 1 "), "{verb}");
         assert!(examples.lines().all(|line| line.chars().count() <= 110), "{verb}");
     }
