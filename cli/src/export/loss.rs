@@ -12,8 +12,10 @@ use serde::Serialize;
 
 use crate::{Failure, temporal};
 
-/// Samples times integrands of a family: a second's work.
-const MOST_WORK: usize = 1 << 21;
+/// Samples times integrands of a family: a second's work,
+const MOST_WORK: usize = 1 << 22;
+/// but no fewer integrands than tell one table from another, and no more than tell it well.
+const INTEGRANDS: [usize; 2] = [16, 256];
 
 /// Dimensions that are measured at most: two pairs.
 const MOST_DIMS: usize = 4;
@@ -42,6 +44,8 @@ pub(super) struct Loss {
 /// Ratios to white noise, but the last.
 #[derive(Clone, Debug, Serialize)]
 struct Figures {
+    /// Test integrands per family.
+    integrands: usize,
     /// Mean over families and pairs of dimensions.
     filtered_error: f64,
     /// The same of each family.
@@ -98,7 +102,11 @@ impl Loss {
             Some((name, share)) => writeln!(to, "; {name} {share:+.1} %)")?,
             None => writeln!(to, ")")?,
         }
-        writeln!(to, "bias: {:.4} in the table, {:.4} in the files", before.bias, after.bias)?;
+        writeln!(
+            to,
+            "bias: {:.4} in the table, {:.4} in the files; both over {} integrands per family",
+            before.bias, after.bias, before.integrands
+        )?;
         let [least, most] = after.evenness;
         let [least_before, most_before] = before.evenness;
         writeln!(
@@ -128,7 +136,7 @@ fn own_kernel(path: &Path, table: &SampleTable) -> Option<Kernel> {
 impl Figures {
     fn measure(table: &SampleTable, kernel: &Kernel, depth: Depth) -> Result<Self, MeasureError> {
         let samples = table.extent().samples();
-        let per_family = (MOST_WORK / samples).clamp(4, 64);
+        let per_family = (MOST_WORK / samples).clamp(INTEGRANDS[0], INTEGRANDS[1]);
         let dims: Vec<usize> = (0..table.dims().min(MOST_DIMS)).collect();
         let pairs: Vec<&[usize]> = dims.chunks(2).collect();
         let (mut filtered_error, mut bias) = (0.0, 0.0);
@@ -154,6 +162,6 @@ impl Figures {
             let [least, greatest] = Marginal::measure(table, dim, bins)?.extremes();
             evenness = [evenness[0].min(least), evenness[1].max(greatest)];
         }
-        Ok(Self { filtered_error, families, bias, evenness, bins })
+        Ok(Self { integrands: per_family, filtered_error, families, bias, evenness, bins })
     }
 }
