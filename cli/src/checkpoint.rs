@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use fsot::optimizer::{Checkpoint, CheckpointError, StepReport};
 
-use crate::Failure;
 use crate::output::{self, Output};
+use crate::{Failure, console};
 
 /// Where checkpoints are written, and how often.
 #[derive(Args, Clone, Debug)]
@@ -45,7 +45,11 @@ impl Arguments {
 
     /// What is written, but for the file that is read too.
     pub fn output(&self) -> Option<Output<'_>> {
-        let path = self.checkpoint.as_deref().filter(|path| Some(*path) != self.resume.as_deref())?;
+        let is_read = |path: &&Path| {
+            let resumed = self.resume.as_deref().and_then(|path| path.canonicalize().ok());
+            resumed.is_some_and(|resumed| path.canonicalize().is_ok_and(|path| path == resumed))
+        };
+        let path = self.checkpoint.as_deref().filter(|path| !is_read(path))?;
         Some(Output { flag: "--checkpoint", path, endings: output::ANY })
     }
 
@@ -95,10 +99,17 @@ impl Writer {
         // One waits while another is written: later ones are left out rather than keep the run waiting.
         let (sender, receiver) = sync_channel::<Checkpoint>(1);
         let to = path.clone();
-        // The disk may be full for a while only.
-        let work = move || match receiver.into_iter().map(|checkpoint| checkpoint.save(&to)).last() {
-            Some(outcome) => outcome,
-            None => Ok(()),
+        let work = move || {
+            let mut outcome = Ok(());
+            for checkpoint in receiver {
+                let told = outcome.is_err();
+                outcome = checkpoint.save(&to);
+                // The disk may be full for a while only, and the run may last for hours.
+                if let (false, Err(error)) = (told, &outcome) {
+                    console::warn(&format!("{error} (--checkpoint); the run goes on"));
+                }
+            }
+            outcome
         };
         Self { path, every, last: Instant::now(), sender: Some(sender), thread: Some(thread::spawn(work)) }
     }

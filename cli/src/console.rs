@@ -77,6 +77,11 @@ pub fn points(count: usize) -> String {
     if count == 1 { "1 point".into() } else { format!("{count} points") }
 }
 
+/// Says something on standard error that doesn't end the verb.
+pub fn warn(words: &str) {
+    let _ = writeln!(io::stderr(), "warning: {words}");
+}
+
 /// Says on standard error what went wrong. Not by `eprintln`, which panics where nobody can listen.
 pub fn complain(error: &dyn Error) {
     let _ = writeln!(io::stderr(), "error: {error}");

@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::{self, BufReader, Read, Write};
 use std::path::Path;
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -19,10 +20,10 @@ use crate::table::extent::Extent;
 
 /// Kind and version of the file; the number grows with everything that alters what a run does next.
 const START: &str = "fsot checkpoint 1\n";
-/// Longer configurations (those that hold pictures) are only known by their hash.
-const MOST_CONFIGURATION: usize = 1 << 20;
-/// Headers hold a configuration and little else.
-const MOST_HEADER: u64 = 4 * MOST_CONFIGURATION as u64;
+/// Longer configurations (those that hold large pictures) are only known by their hash.
+const MOST_CONFIGURATION: usize = 1 << 25;
+/// A header is some hundred bytes.
+const MOST_HEADER: u64 = 1 << 16;
 /// Bytes of the hash at the end.
 const HASH: usize = 32;
 
@@ -60,6 +61,8 @@ const HASH: usize = 32;
 #[derive(Clone, Debug)]
 pub struct Checkpoint {
     pub(super) header: Header,
+    /// As JSON; empty if it is too long.
+    configuration: Arc<[u8]>,
     /// Of all frames, or of the one that an animation begins with.
     pub(super) points: Vec<f32>,
     pub(super) moments: [Vec<f32>; 2],
@@ -74,7 +77,8 @@ pub(super) struct Header {
     dims: usize,
     /// Of what is optimised.
     pub hash: String,
-    configuration: Option<serde_json::Value>,
+    /// Bytes of the configuration.
+    configuration: usize,
     /// Lengths of the lists.
     lengths: [usize; 3],
     pub place: Counters,
@@ -105,8 +109,8 @@ pub(super) struct Place<'a> {
 #[derive(Debug)]
 pub(super) struct Identity {
     pub hash: String,
-    /// Unless it is too long.
-    configuration: Option<serde_json::Value>,
+    /// As JSON; empty if it is too long.
+    configuration: Arc<[u8]>,
 }
 
 impl Identity {
@@ -115,9 +119,8 @@ impl Identity {
         serde_json::to_writer(&mut text, config).expect("a configuration is plain data");
         let Text { mut hash, start, length } = text;
         hash.update(objective.demanded());
-        let whole = length <= MOST_CONFIGURATION;
-        let configuration = whole.then(|| serde_json::from_slice(&start).expect("it was just written"));
-        Self { hash: hexadecimal(&hash.finalize()), configuration }
+        let whole = if length <= MOST_CONFIGURATION { start } else { Vec::new() };
+        Self { hash: hexadecimal(&hash.finalize()), configuration: whole.into() }
     }
 }
 
@@ -160,12 +163,12 @@ impl Checkpoint {
             extent: config.extent,
             dims: config.dims,
             hash: identity.hash.clone(),
-            configuration: identity.configuration.clone(),
+            configuration: identity.configuration.len(),
             lengths: [points.len(), moments[0].len(), moments[1].len()],
             place: counters,
             course,
         };
-        Self { header, points, moments }
+        Self { header, configuration: Arc::clone(&identity.configuration), points, moments }
     }
 
     /// What its run optimises. The demand of [`Optimizer::for_demand`](crate::Optimizer::for_demand) is not a
@@ -176,9 +179,10 @@ impl Checkpoint {
     /// of labels, or names code.
     pub fn config(&self) -> Result<Config, CheckpointError> {
         let no_config = |reason: String| CheckpointError::NoConfig { reason };
-        let too_long = || no_config(format!("it is longer than {MOST_CONFIGURATION} bytes"));
-        let configuration = self.header.configuration.as_ref().ok_or_else(too_long)?;
-        serde_json::from_value(configuration.clone()).map_err(|error| no_config(error.to_string()))
+        if self.configuration.is_empty() {
+            return Err(no_config(format!("it is longer than {MOST_CONFIGURATION} bytes")));
+        }
+        serde_json::from_slice(&self.configuration).map_err(|error| no_config(error.to_string()))
     }
 
     /// The table as it was then; a copy.
@@ -187,6 +191,12 @@ impl Checkpoint {
         let is_whole = self.points.len() == extent.samples() * dims;
         let points = if is_whole { self.points.clone() } else { displaced(extent, &self.points) };
         SampleTable::trusted(extent, dims, points)
+    }
+
+    /// Version of this crate that took it. Another one reads it as long as the first line of the file is the
+    /// same, but may round otherwise.
+    pub fn crate_version(&self) -> &str {
+        &self.header.crate_version
     }
 
     /// The work of the run that goes on, and the steps that were taken of it; `None` between runs.
@@ -204,6 +214,7 @@ impl Checkpoint {
         out.write_all(START.as_bytes())?;
         out.write_all(&(header.len() as u64).to_le_bytes())?;
         out.write_all(&header)?;
+        out.write_all(&self.configuration)?;
         for list in [&self.points, &self.moments[0], &self.moments[1]] {
             little_endian(list, |bytes| out.write_all(bytes))?;
         }
@@ -230,6 +241,7 @@ impl Checkpoint {
         let header = from.take_exactly(length)?;
         let header: Header = serde_json::from_slice(&header).map_err(|error| damaged(error.to_string()))?;
         let coordinates = header.check()?;
+        let configuration = from.take_exactly(header.configuration as u64)?.into();
         let mut lists = [const { Vec::new() }; 3];
         for (list, &length) in lists.iter_mut().zip(&header.lengths) {
             if length != 0 && length != coordinates {
@@ -247,7 +259,7 @@ impl Checkpoint {
         if let Some(value) = points.iter().find(|value| !(0.0..1.0).contains(*value)) {
             return Err(damaged(format!("a coordinate is {value}")));
         }
-        Ok(Self { header, points, moments: [first, second] })
+        Ok(Self { header, configuration, points, moments: [first, second] })
     }
 
     /// Writes the file, which appears whole or not at all.

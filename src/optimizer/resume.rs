@@ -91,7 +91,7 @@ impl Optimizer {
     /// [`CheckpointError::OtherObjective`] if it was not; [`CheckpointError::Damaged`] if its parts do not
     /// fit each other. Nothing is changed then.
     pub fn resume(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
-        let Checkpoint { header, points, moments } = checkpoint;
+        let Checkpoint { header, points, moments, .. } = checkpoint;
         let here = self.identity.get_or_init(|| Identity::new(&self.config, &self.objective));
         if header.hash != here.hash {
             let here = here.hash.clone();

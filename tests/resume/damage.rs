@@ -68,9 +68,10 @@ fn another_configuration_or_demand_is_refused() {
 
 #[test]
 fn long_configurations_are_known_by_their_hash() {
+    let side = 2048;
     let picture = |shift: usize| {
-        let values = (0..512 * 512).map(|pixel| ((pixel + shift) % 97) as f32 / 7.0).collect();
-        Config::stippling(100, Density::new(512, 512, values).unwrap())
+        let values = (0..side * side).map(|pixel| ((pixel + shift) % 97) as f32 / 7.0).collect();
+        Config::stippling(100, Density::new(side, side, values).unwrap())
     };
     let checkpoint = optimizer(&picture(0)).checkpoint();
     assert!(bytes(&checkpoint).len() < 4096);

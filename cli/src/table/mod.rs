@@ -18,7 +18,7 @@ pub use self::flags::Arguments;
 use self::plan::Planned;
 use self::summary::Summary;
 use crate::checkpoint::Writer;
-use crate::console::Console;
+use crate::console::{self, Console};
 use crate::interrupt::Interrupt;
 use crate::log::Log;
 use crate::output::{self, Output};
@@ -99,6 +99,12 @@ fn start(arguments: &Arguments) -> Result<Option<Start>, Failure> {
     let advised = |error: ConfigError| advice::with_flags(error.into(), advice::of_table);
     if let Some(checkpoint) = checkpoint.resumed()? {
         shared.start_threads()?;
+        if checkpoint.crate_version() != env!("CARGO_PKG_VERSION") {
+            let version = checkpoint.crate_version();
+            console::warn(&format!(
+                "the checkpoint was taken by version {version}, which may round otherwise"
+            ));
+        }
         let mut optimizer = Optimizer::new(checkpoint.config()?)?;
         optimizer.resume(checkpoint)?;
         return Ok(Some(Start { optimizer, course: Course::Resumed, last_step: None }));
@@ -112,6 +118,11 @@ fn start(arguments: &Arguments) -> Result<Option<Start>, Failure> {
     shared.start_threads()?;
     let mut optimizer = Optimizer::new(recipe.config()?).map_err(advised)?;
     if !dry_run {
+        if checkpoint.output().is_some() && optimizer.checkpoint().config().is_err() {
+            let complaint = "the configuration is too long for a checkpoint: leave out --checkpoint, or give a \
+                             smaller --kernel or fewer --terms";
+            return Err(complaint.into());
+        }
         let course = Course::New(recipe.until());
         return Ok(Some(Start { optimizer, course, last_step: recipe.steps }));
     }

@@ -6,6 +6,7 @@ use std::process::Stdio;
 use std::thread::sleep;
 use std::time::Duration;
 
+use ndarray::Array3;
 use tempfile::tempdir;
 
 #[cfg(unix)]
@@ -80,6 +81,20 @@ fn a_stopped_run_leaves_a_checkpoint_of_its_last_step() {
     assert!(out.contains("the run goes on with --resume run.checkpoint"), "{out}");
     succeed(home, "--resume run.checkpoint --no-bound --out half.npy");
     assert_eq!(result(home, "half.npy"), result(home, "whole.npy"));
+}
+
+/// Metadata of such a run are longer than its table.
+#[test]
+fn a_run_with_a_large_kernel_is_resumed() {
+    let home = tempdir().unwrap();
+    let home = home.path();
+    let kernel = Array3::from_shape_fn([16, 31, 31], |(t, y, x)| ((t * 7 + y * 3 + x) % 11) as f64);
+    ndarray_npy::write_npy(home.join("kernel.npy"), &kernel).unwrap();
+    let flags = "--frames 16 --width 32 --height 32 --kernel kernel.npy --slices-per-class 2 --no-bound";
+    succeed(home, &format!("{flags} --checkpoint run.checkpoint --every 1ms --out whole.npy"));
+    // By another spelling of the same file.
+    succeed(home, "--resume ./run.checkpoint --checkpoint run.checkpoint --no-bound --out again.npy");
+    assert_eq!(result(home, "again.npy"), result(home, "whole.npy"));
 }
 
 #[test]
