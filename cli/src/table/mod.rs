@@ -119,8 +119,8 @@ fn start(arguments: &Arguments) -> Result<Option<Start>, Failure> {
     let mut optimizer = Optimizer::new(recipe.config()?).map_err(advised)?;
     if !dry_run {
         if checkpoint.output().is_some() && optimizer.checkpoint().config().is_err() {
-            let complaint = "the configuration is too long for a checkpoint: leave out --checkpoint, or give a \
-                             smaller --kernel or fewer --terms";
+            let complaint = "the configuration is too long for a checkpoint: leave out --checkpoint, or give \
+                             a smaller --kernel or fewer --terms";
             return Err(complaint.into());
         }
         let course = Course::New(recipe.until());
