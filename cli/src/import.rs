@@ -9,6 +9,7 @@ use serde_json::json;
 
 use crate::console::Console;
 use crate::inspect::shape;
+use crate::interrupt::Interrupt;
 use crate::output::{self, Output};
 use crate::{Ended, Failure, Shared};
 
@@ -102,6 +103,8 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
     let imported = SampleTable::import(path, &options)?;
     let Imported { table, dtype, shape: of_file, axes, levels, first_level, ones, left_out, record, .. } =
         &imported;
+    // A signal from now on finds a table that is nearly there: it is completed.
+    Interrupt::listen()?;
     table.save(out)?;
 
     let mut console = Console::new(shared);

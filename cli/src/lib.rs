@@ -20,8 +20,9 @@
 //! | 3 | SIGINT, SIGTERM or SIGHUP ended the run early; what it had reached is written, and says so |
 //!
 //! A signal before the first step, or during `fsot inspect` and `fsot report`, finds nothing to keep and
-//! kills the process as signals do (130, 143 and 129 to a shell). A reader of the output who goes away
-//! (`| head -1`) is no failure.
+//! kills the process as signals do (130, 143 and 129 to a shell). One that ends `fsot export` before all
+//! files are complete is a failure, since nothing is written then. A reader of the output who goes away (`|
+//! head -1`) is no failure.
 //!
 //! # Shared with other programs
 //!

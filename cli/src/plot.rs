@@ -10,6 +10,7 @@ use serde_json::json;
 
 use crate::console::Console;
 use crate::draw::chart::{COLOURS, Frame, TEXT_PX, spread, write_text};
+use crate::interrupt::Interrupt;
 use crate::log::COLUMNS;
 use crate::output::{self, Output};
 use crate::{Ended, Failure, Shared};
@@ -73,6 +74,7 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
     }
     let mut svg = String::new();
     draw(&mut svg, &logs, &panels)?;
+    Interrupt::listen()?;
     output::write("--out", out, |file| file.write_all(svg.as_bytes()))?;
 
     let mut console = Console::new(shared);

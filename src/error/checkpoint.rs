@@ -5,6 +5,8 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
+use super::io_advice;
+
 /// A checkpoint that cannot be written, read or resumed.
 ///
 /// ```
@@ -18,7 +20,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum CheckpointError {
     /// It could not be read or written.
-    #[error("{0}; check the path and its permissions")]
+    #[error("{0}; {advice}", advice = io_advice(.0))]
     Io(#[from] io::Error),
     /// Another kind of file, or another version of this one.
     #[error(

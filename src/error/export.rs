@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
+use super::io_advice;
+
 /// Why a table cannot be exported. Nothing is written then.
 ///
 /// Options are called as they are on the command line; those of
@@ -61,8 +63,11 @@ pub enum ExportError {
         /// What tells the files apart.
         place: &'static str,
     },
+    /// The observer of [`export_observed`](crate::SampleTable::export_observed) broke off.
+    #[error("broken off before all files were complete: nothing is written; export again")]
+    Stopped,
     /// A file cannot be written.
-    #[error("cannot write {}: {source}; check the path and its permissions", path.display())]
+    #[error("cannot write {}: {source}; {}", path.display(), io_advice(source))]
     Io {
         /// The file.
         path: PathBuf,

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use super::{ExtentError, ImportError, Short};
+use super::{ExtentError, ImportError, Short, io_advice};
 
 /// A table that cannot be made, read or written.
 ///
@@ -41,7 +41,7 @@ pub enum TableError {
         value: f32,
     },
     /// The file could not be opened, read or written.
-    #[error("cannot {verb} {}: {source}; check the path and its permissions", path.display())]
+    #[error("cannot {verb} {}: {source}; {}", path.display(), io_advice(source))]
     Io {
         /// `read` or `write`.
         verb: &'static str,

@@ -96,6 +96,17 @@ pub enum ImportError {
         /// The word.
         text: String,
     },
+    /// Something else than a number in a C array.
+    #[error(
+        "line {line} has {text:?} where a number must stand: write plain numbers between commas, without \
+         names, letters in quotes, casts or places in brackets"
+    )]
+    Literal {
+        /// Line, from 1.
+        line: usize,
+        /// What stands there.
+        text: String,
+    },
     /// Lines of a text file have unequal lengths.
     #[error(
         "line {line} has {given} numbers and the lines before it {expected}: \

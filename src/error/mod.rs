@@ -27,3 +27,12 @@ pub use self::shape::{ExtentError, GroupError, RangeError};
 pub use self::short::Short;
 pub(crate) use self::short::ShortList;
 pub use self::target::TargetError;
+
+/// What to do about the system's word.
+pub(crate) fn io_advice(error: &std::io::Error) -> &'static str {
+    match error.kind() {
+        std::io::ErrorKind::OutOfMemory => "give a smaller file, or a machine with more memory",
+        std::io::ErrorKind::StorageFull => "make room there, or choose another place",
+        _ => "check the path and its permissions",
+    }
+}

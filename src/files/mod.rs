@@ -12,6 +12,7 @@ mod levels;
 mod literal;
 pub(crate) mod metadata;
 pub(crate) mod npy;
+pub mod shell;
 mod text;
 mod whole;
 

@@ -120,14 +120,18 @@ impl Reader {
         if self.word.is_empty() {
             return Ok(());
         }
-        let number = str::from_utf8(&self.word).ok().and_then(nearest);
+        // Some programs write names, or all words, in quotes.
+        let quoted = self.word.strip_prefix(b"\"");
+        let inner = quoted.and_then(|word| word.strip_suffix(b"\"")).unwrap_or(&self.word);
+        let number = str::from_utf8(inner).ok().and_then(nearest);
+        let is_name = quoted.unwrap_or(&self.word).first().is_some_and(u8::is_ascii_alphabetic);
         match number {
             Some(number) => {
                 self.values.push(number);
                 self.count += 1;
             }
             // Names of columns above all numbers.
-            None if self.values.is_empty() && self.line == 0 && self.word[0].is_ascii_alphabetic() => {
+            None if self.values.is_empty() && self.line == 0 && is_name => {
                 self.skipping = true;
             }
             None => return Err(self.no_number()),
@@ -174,5 +178,26 @@ mod tests {
         }
         // Whole numbers keep digits that no f32 has.
         assert_eq!(nearest("16777219"), Some(16777219.0));
+    }
+
+    fn all(text: &str) -> Result<(Vec<f64>, usize), ImportError> {
+        let mut reader = Reader::default();
+        text.bytes().chain([b'\n']).try_for_each(|byte| reader.take(byte))?;
+        Ok((reader.values, reader.columns))
+    }
+
+    #[test]
+    fn quotes_are_of_names_and_of_numbers() {
+        let expected = Ok((vec![0.25, 0.5], 2));
+        for text in
+            ["a,b\n0.25,0.5", "\"a\",\"b\"\n0.25,0.5", "\"a b\";\"c, 1\"\n0.25;0.5", "\"0.25\",\"0.5\""]
+        {
+            assert_eq!(all(text), expected, "{text}");
+        }
+        // A comma within a number, and half a pair of quotes, are no names.
+        for (text, word) in [("\"0,5\"", "\"0"), ("\"0.5", "\"0.5"), ("0.5\"", "0.5\""), ("\"\"", "\"\"")] {
+            assert_eq!(all(text), Err(ImportError::Number { line: 1, text: word.into() }), "{text}");
+        }
+        assert!(all("1 2\n\"a\"").is_err());
     }
 }

@@ -1,7 +1,7 @@
 //! Error of the mean over many samples: what no filter takes away.
 
-use super::coordinates::Coordinates;
 use super::error::MeasureError;
+use super::errors::Errors;
 use super::integrands::Integrands;
 use super::ratios::Ratios;
 use super::samples::Samples;
@@ -47,8 +47,8 @@ impl Bias {
         dims: &[usize],
         integrands: &Integrands,
     ) -> Result<Self, MeasureError> {
-        let points = Coordinates::gather(samples, dims)?.fitting("an integrand", integrands.dims())?;
-        let extent = points.extent;
+        let errors = Errors::of(samples, dims, "an integrand", integrands.dims())?;
+        let extent = errors.extent;
         let mean_sq = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64;
         let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
         let [table, frame, pixel] = Ratios::over(
@@ -56,11 +56,16 @@ impl Bias {
             || (),
             |(), pair, ratios| {
                 for (integrand, ratio) in pair.iter().zip(ratios) {
-                    let pixels: Vec<f64> = points.errors(integrand).collect();
-                    let frames: Vec<f64> =
-                        pixels.chunks_exact(extent.height * extent.width).map(mean).collect();
+                    let plane = extent.height * extent.width;
+                    let mut of_pixels = 0.0;
+                    let mean_of = |frame: usize| {
+                        let pixels = errors.within(frame * plane..(frame + 1) * plane, integrand);
+                        pixels.inspect(|error| of_pixels += error * error).sum::<f64>() / plane as f64
+                    };
+                    let frames: Vec<f64> = (0..extent.frames).map(mean_of).collect();
                     let samples = [1, extent.frames, extent.sites()].map(|parts| extent.samples() / parts);
-                    let squares = [mean(&frames).powi(2), mean_sq(&frames), mean_sq(&pixels)];
+                    let squares =
+                        [mean(&frames).powi(2), mean_sq(&frames), of_pixels / extent.sites() as f64];
                     *ratio = std::array::from_fn(|k| squares[k] * samples[k] as f64 / integrand.variance());
                 }
             },

@@ -1,9 +1,6 @@
 //! The coordinates of one dimension group.
 
-use std::ops::Range;
-
 use super::error::MeasureError;
-use super::integrand::Integrand;
 use super::samples::{Samples, Values};
 use crate::error::GroupError;
 use crate::table::extent::Extent;
@@ -49,21 +46,6 @@ impl Coordinates {
     /// The coordinates of each sample.
     pub fn points(&self) -> std::slice::ChunksExact<'_, f64> {
         self.values.chunks_exact(self.dims)
-    }
-
-    /// Error of every site, in the order of sites.
-    pub fn errors(&self, integrand: &Integrand) -> impl Iterator<Item = f64> {
-        self.errors_in(0..self.extent.sites(), integrand)
-    }
-
-    /// Error of the sites of a range, in the order of sites.
-    pub fn errors_in(&self, sites: Range<usize>, integrand: &Integrand) -> impl Iterator<Item = f64> {
-        let share = 1.0 / self.extent.spp as f64;
-        let pixel = self.extent.spp * self.dims;
-        self.values[sites.start * pixel..sites.end * pixel].chunks_exact(pixel).map(move |pixel| {
-            let sum: f64 = pixel.chunks_exact(self.dims).map(|x| integrand.value(x)).sum();
-            sum * share - integrand.integral()
-        })
     }
 }
 

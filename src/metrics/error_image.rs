@@ -2,8 +2,8 @@
 
 use ndarray::Array3;
 
-use super::coordinates::Coordinates;
 use super::error::MeasureError;
+use super::errors::Errors;
 use super::integrand::Integrand;
 use super::samples::Samples;
 use crate::table::extent::Extent;
@@ -42,9 +42,9 @@ impl ErrorImage {
         dims: &[usize],
         integrand: &Integrand,
     ) -> Result<Self, MeasureError> {
-        let points = Coordinates::gather(samples, dims)?.fitting("the integrand", integrand.dims())?;
-        let Extent { frames, height, width, spp } = points.extent;
-        let errors = points.errors(integrand).collect();
+        let found = Errors::of(samples, dims, "the integrand", integrand.dims())?;
+        let Extent { frames, height, width, spp } = found.extent;
+        let errors = found.all(integrand).collect();
         let errors = Array3::from_shape_vec((frames, height, width), errors).expect("one error per site");
         Ok(Self { errors, white_variance: integrand.variance() / spp as f64 })
     }

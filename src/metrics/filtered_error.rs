@@ -2,8 +2,8 @@
 
 use rustfft::num_complex::Complex64;
 
-use super::coordinates::Coordinates;
 use super::error::MeasureError;
+use super::errors::Errors;
 use super::integrands::Integrands;
 use super::ratios::Ratios;
 use super::samples::Samples;
@@ -60,8 +60,8 @@ impl FilteredError {
         integrands: &Integrands,
         kernel: &Kernel,
     ) -> Result<Self, MeasureError> {
-        let points = Coordinates::gather(samples, dims)?.fitting("an integrand", integrands.dims())?;
-        let extent = points.extent;
+        let errors = Errors::of(samples, dims, "an integrand", integrands.dims())?;
+        let extent = errors.extent;
         let meter = Meter::new(&extent, kernel)?;
         let [unfiltered, spatial, spatio_temporal] = Ratios::over(
             integrands,
@@ -69,11 +69,11 @@ impl FilteredError {
             |scratch, pair, ratios| {
                 // Two real images ride in one complex transform.
                 scratch.data.fill(Complex64::default());
-                for (site, error) in scratch.data.iter_mut().zip(points.errors(&pair[0])) {
+                for (site, error) in scratch.data.iter_mut().zip(errors.all(&pair[0])) {
                     site.re = error;
                 }
                 if let Some(second) = pair.get(1) {
-                    for (site, error) in scratch.data.iter_mut().zip(points.errors(second)) {
+                    for (site, error) in scratch.data.iter_mut().zip(errors.all(second)) {
                         site.im = error;
                     }
                 }

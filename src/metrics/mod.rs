@@ -49,6 +49,7 @@ mod discrepancy;
 mod drawn;
 mod error;
 mod error_image;
+mod errors;
 mod filtered_error;
 mod histogram;
 mod integrand;

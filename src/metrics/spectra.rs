@@ -4,8 +4,8 @@ use ndarray::{Array2, ArrayView3};
 use rayon::prelude::*;
 use rustfft::num_complex::Complex64;
 
-use super::coordinates::Coordinates;
 use super::error::MeasureError;
+use super::errors::Errors;
 use super::integrands::Integrands;
 use super::samples::Samples;
 use crate::kernel::fft::{Transform, TransformBuffers};
@@ -119,8 +119,8 @@ impl Spectra {
         dims: &[usize],
         integrands: &Integrands,
     ) -> Result<Self, MeasureError> {
-        let points = Coordinates::gather(samples, dims)?.fitting("an integrand", integrands.dims())?;
-        let extent = points.extent;
+        let errors = Errors::of(samples, dims, "an integrand", integrands.dims())?;
+        let extent = errors.extent;
         let shape = [extent.frames, extent.height, extent.width];
         let all: Vec<_> = integrands.iter().collect();
         let parts: Vec<Sums> = all
@@ -133,7 +133,7 @@ impl Spectra {
                     image.fill(Complex64::default());
                     for (k, integrand) in pair.iter().enumerate() {
                         let scale = (extent.spp as f64 / integrand.variance()).sqrt();
-                        for (pixel, error) in image.iter_mut().zip(points.errors(integrand)) {
+                        for (pixel, error) in image.iter_mut().zip(errors.all(integrand)) {
                             let value = scale * error;
                             if k == 0 { pixel.re = value } else { pixel.im = value }
                         }

@@ -4,6 +4,7 @@ use std::fs;
 
 use fsot::files::{ExportOptions, Format, ImportOptions, TableError};
 use fsot::{Extent, SampleTable};
+use tempfile::tempdir;
 
 use crate::{Home, export_as, table};
 
@@ -74,4 +75,35 @@ fn records_that_lie_are_refused() {
     // As the words say.
     fs::remove_file(&exported.record_path).unwrap();
     SampleTable::import(home.path().join("mask_s0.png"), &ImportOptions::default()).unwrap();
+}
+
+/// A picture that its bytes cannot hold is refused before memory is asked for it.
+#[test]
+fn a_png_that_claims_too_much_is_told_of_by_its_size() {
+    let home = tempdir().unwrap();
+    let path = home.path().join("huge.png");
+    let mut header = b"IHDR".to_vec();
+    header.extend(60_000_u32.to_be_bytes());
+    header.extend(60_000_u32.to_be_bytes());
+    header.extend([16, 6, 0, 0, 0]);
+    let mut bytes = b"\x89PNG\r\n\x1a\n".to_vec();
+    for chunk in [&header[..], b"IDAT\x78\x01\x01"] {
+        bytes.extend((chunk.len() as u32 - 4).to_be_bytes());
+        bytes.extend(chunk);
+        bytes.extend(crc32(chunk).to_be_bytes());
+    }
+    fs::write(&path, &bytes).unwrap();
+    let error = SampleTable::import(&path, &ImportOptions::default()).unwrap_err().to_string();
+    let words = format!("60000 x 60000 pixels are more than its {} bytes can hold", bytes.len());
+    assert!(error.contains(&words), "{error}");
+    assert!(error.ends_with("write it anew, or give another file"), "{error}");
+}
+
+fn crc32(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(!0, |crc, &byte| {
+        (0..8).fold(
+            crc ^ u32::from(byte),
+            |crc, _| if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 },
+        )
+    })
 }

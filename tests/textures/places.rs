@@ -2,8 +2,8 @@
 
 use std::fs;
 
-use fsot::SampleTable;
 use fsot::files::{Depth, Format, RecordedFile};
+use fsot::{Extent, SampleTable};
 use image::DynamicImage;
 use ktx2::dfd;
 
@@ -90,6 +90,18 @@ fn png_says_nothing_of_colours() {
         }
         kinds.dedup();
         assert_eq!(kinds, ["IHDR", "IDAT", "IEND"]);
+    }
+}
+
+/// Noise cannot be packed: what tries makes it larger.
+#[test]
+fn png_is_hardly_larger_than_its_numbers() {
+    let noise = SampleTable::white_noise(Extent::animation(2, 128, 128), 2, 5).unwrap();
+    for depth in [Depth::U8, Depth::U16] {
+        let Home { path, home: _home, .. } = export(&noise, "mask.png", Format::Atlas, depth);
+        let bytes = fs::metadata(path).unwrap().len() as usize;
+        let numbers = noise.values().len() * depth.bytes();
+        assert!(bytes < numbers + numbers / 50, "{bytes} for {numbers}");
     }
 }
 

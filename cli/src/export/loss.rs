@@ -20,6 +20,10 @@ const INTEGRANDS: [usize; 2] = [16, 256];
 /// Dimensions that are measured at most: two pairs.
 const MOST_DIMS: usize = 4;
 
+/// Samples of a table whose frames are all filtered, at once; of more, so many frames are.
+const MOST_OF_ALL_FRAMES: usize = 1 << 18;
+const FEW: usize = 4;
+
 /// More than this share of the filtered error is worth a word.
 const MUCH: f64 = 0.02;
 
@@ -37,6 +41,9 @@ pub(super) struct Loss {
     dims: usize,
     /// Whether there are more.
     is_part: bool,
+    /// Frames of the filtered error, at equal distances.
+    frames: usize,
+    all_frames: usize,
     before: Figures,
     after: Figures,
 }
@@ -59,28 +66,28 @@ struct Figures {
 
 impl Loss {
     /// Of the table in this file.
-    pub(super) fn measure(
-        path: &Path,
-        table: &SampleTable,
-        options: &ExportOptions,
-    ) -> Result<Self, Failure> {
+    pub(super) fn measure(path: &Path, table: SampleTable, options: &ExportOptions) -> Result<Self, Failure> {
         let (depth, rounding) = (options.depth(), options.rounding);
-        let own = own_kernel(path, table);
+        let own = own_kernel(path, &table);
         let own_kernel = own.is_some();
         let kernel = own.unwrap_or_else(|| {
             let temporal = temporal::or_default(None, table.extent().frames);
             Kernel::product(SpatialKernel::Gaussian { sigma_px: SIGMA_PX }, temporal)
         });
-        let before = Figures::measure(table, &kernel, depth)?;
-        let after = Figures::measure(&table.quantized(depth, rounding), &kernel, depth)?;
+        let all_frames = table.extent().frames;
+        let frames =
+            if table.extent().samples() > MOST_OF_ALL_FRAMES { all_frames.min(FEW) } else { all_frames };
         let dims = table.dims().min(MOST_DIMS);
         let is_part = dims < table.dims();
-        Ok(Self { depth, rounding, own_kernel, dims, is_part, before, after })
+        // One after the other, and in the same place: there may be no room for two tables.
+        let before = Figures::measure(&table, &kernel, depth, frames)?;
+        let after = Figures::measure(&table.into_quantized(depth, rounding), &kernel, depth, frames)?;
+        Ok(Self { depth, rounding, own_kernel, dims, is_part, frames, all_frames, before, after })
     }
 
     /// One line for each figure.
     pub(super) fn words(&self, to: &mut dyn Write) -> io::Result<()> {
-        let Self { depth, own_kernel, dims, is_part, before, after, .. } = self;
+        let Self { depth, own_kernel, dims, is_part, frames, all_frames, before, after, .. } = self;
         if *is_part {
             writeln!(to, "of the first {dims} dimensions:")?;
         }
@@ -94,9 +101,13 @@ impl Loss {
         let kernel = if *own_kernel { "its own kernel" } else { "the eye's kernel" };
         let share = change(before.filtered_error, after.filtered_error);
         let [was, is] = [before.filtered_error, after.filtered_error];
+        let part = match frames < all_frames {
+            true => format!(", of {frames} of {all_frames} frames"),
+            false => String::new(),
+        };
         write!(
             to,
-            "filtered error under {kernel}: {was:.4} in the table, {is:.4} in the files ({share:+.1} %"
+            "filtered error under {kernel}{part}: {was:.4} in the table, {is:.4} in the files ({share:+.1} %"
         )?;
         match worst {
             Some((name, share)) => writeln!(to, "; {name} {share:+.1} %)")?,
@@ -134,7 +145,12 @@ fn own_kernel(path: &Path, table: &SampleTable) -> Option<Kernel> {
 }
 
 impl Figures {
-    fn measure(table: &SampleTable, kernel: &Kernel, depth: Depth) -> Result<Self, MeasureError> {
+    fn measure(
+        table: &SampleTable,
+        kernel: &Kernel,
+        depth: Depth,
+        frames: usize,
+    ) -> Result<Self, MeasureError> {
         let samples = table.extent().samples();
         let per_family = (MOST_WORK / samples).clamp(INTEGRANDS[0], INTEGRANDS[1]);
         let dims: Vec<usize> = (0..table.dims().min(MOST_DIMS)).collect();
@@ -144,7 +160,11 @@ impl Figures {
         for pair in &pairs {
             let integrands = Integrands::random(pair.len(), per_family, 0)?;
             let share = 1.0 / pairs.len() as f64;
-            let error = FilteredError::measure(table, pair, &integrands, kernel)?.spatio_temporal;
+            let error = match frames < table.extent().frames {
+                true => FilteredError::measure_frames(table, pair, &integrands, kernel, frames)?,
+                false => FilteredError::measure(table, pair, &integrands, kernel)?,
+            };
+            let error = error.spatio_temporal;
             filtered_error += share * error.mean.mean;
             bias += share * Bias::measure(table, pair, &integrands)?.table.mean.mean;
             for (at, family) in error.families.iter().enumerate() {

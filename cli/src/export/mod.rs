@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use fsot::SampleTable;
-use fsot::files::{Depth, ExportOptions, Format, Metadata, Rounding};
+use fsot::files::{Depth, ExportError, ExportOptions, Format, Metadata, Rounding};
 use serde_json::json;
 
 use self::loss::Loss;
 use crate::console::Console;
+use crate::interrupt::Interrupt;
 use crate::{Ended, Failure, Shared};
 
 const EXAMPLES: &str = "\
@@ -34,8 +35,9 @@ A texture holds one sample of a pixel and up to four dimensions; more samples go
 more dimensions to _d0-3, _d4-7 and so on. How to read the files lies beside them, under the name that is
 given and .json. docs/formats.md says which number is where in which format, and who reads it.
 A level k of 8 bits stands for (k + 1/2) / 256, one of 16 bits for (k + 1/2) / 65536.
-Files appear all or none.
-Exit codes: 0 done, 1 refused or failed, 2 bad command line.";
+Files appear all or none: a signal (Ctrl-C) before all are complete leaves everything as it was, with code 1;
+a later one only ends the measurement of what the numbers cost.
+Exit codes: 0 done, 1 refused or failed, 2 bad command line, 3 done, but a signal ended the measurement.";
 
 /// Writes a sample table as textures, or in another format that engines read.
 #[derive(Args, Debug)]
@@ -85,7 +87,8 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
         }
     }
     shared.start_threads()?;
-    let exported = table.export(out, &options)?;
+    let interrupt = Interrupt::listen()?;
+    let exported = table.export_observed(out, &options, |_| interrupt.flow()).map_err(said)?;
     let mut console = Console::new(shared);
     console.say(|words| {
         writeln!(words, "{exported}")?;
@@ -93,12 +96,27 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
     });
     // Numbers that are the values themselves cost nothing.
     let measured = !no_loss && options.depth() != Depth::F32;
-    let loss = if measured { Some(Loss::measure(path, &table, &options)?) } else { None };
-    if let Some(loss) = &loss {
-        console.say(|words| loss.words(words));
-    }
+    let path = path.clone();
+    let loss = match measured {
+        true => interrupt.unless_it_comes(move || Loss::measure(&path, table, &options)).transpose()?,
+        false => None,
+    };
+    let stopped = measured && loss.is_none();
+    console.say(|words| match &loss {
+        Some(loss) => loss.words(words),
+        None if stopped => writeln!(words, "what the numbers cost: not measured, since a signal came"),
+        None => Ok(()),
+    });
     console.figures(&json!({ "export": exported, "loss": loss }));
-    console.end(Ended::Done)
+    console.end(Ended::stopped_if(stopped))
+}
+
+/// Nothing breaks an export off but a signal.
+fn said(error: ExportError) -> Failure {
+    match error {
+        ExportError::Stopped => "a signal came before all files were complete: nothing is written".into(),
+        other => other.into(),
+    }
 }
 
 /// Whether both are the same file, which is there.

@@ -1,9 +1,8 @@
 //! The command that makes a table again, where its metadata say how it was made.
 
-use std::ffi::OsStr;
 use std::path::Path;
 
-use fsot::files::Metadata;
+use fsot::files::{Metadata, shell};
 use fsot::kernel::SpatialKernel;
 use fsot::{Config, Kernel};
 
@@ -78,11 +77,7 @@ impl Origin {
                 None
             }
             (true, Some(_)) => {
-                let json = Metadata::path_beside(path);
-                // A name that begins like a flag is none behind its folder.
-                let is_flag = json.as_os_str().as_encoded_bytes().starts_with(b"-");
-                let json = if is_flag { Path::new(".").join(json) } else { json };
-                let json = quoted(json.as_os_str());
+                let json = shell::path(Metadata::path_beside(path));
                 Some(format!("fsot table --config {json} --out again.npy"))
             }
         };
@@ -99,15 +94,4 @@ impl Origin {
 fn flags(kernel: &Kernel) -> Option<String> {
     let SpatialKernel::Gaussian { sigma_px } = kernel.spatial else { return None };
     Some(format!("--sigma {sigma_px} --temporal {}", temporal_flag(&kernel.temporal)?))
-}
-
-/// A word as a shell reads it.
-pub fn quoted(word: &OsStr) -> String {
-    let word = word.to_string_lossy();
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "/._-+:@%,=".contains(c);
-    if !word.is_empty() && word.chars().all(is_plain) {
-        word.into_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
-    }
 }

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use fsot::config::DimensionGroup;
-use fsot::files::{BoundEstimate, Metadata, WholeFile};
+use fsot::files::{BoundEstimate, Metadata, WholeFile, shell};
 use fsot::metrics::{Integrands, RadialBin};
 use fsot::{Kernel, SampleTable};
 use serde_json::json;
@@ -28,6 +28,7 @@ use self::panels::Panels;
 use crate::console::Console;
 use crate::inspect::figures::{self as measured, GroupFigures};
 use crate::inspect::{Beside, Effort, Inspection, Yardstick, shape};
+use crate::interrupt::Interrupt;
 use crate::output::{self, Output};
 use crate::{Ended, Failure, Shared};
 
@@ -132,6 +133,8 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
     }
     let report = Report { white, columns, command: command() };
 
+    // Files are not left half-written by a signal, and it takes no time to complete them.
+    Interrupt::listen()?;
     let mut files = Vec::new();
     if let Some(page) = &out {
         files.push(("--out", page, page::html(&report)?.into_bytes()));
@@ -259,7 +262,7 @@ fn labels(paths: &[PathBuf]) -> Vec<String> {
 /// The command line of this process.
 fn command() -> String {
     let words = std::env::args_os().skip(1).collect::<Vec<OsString>>();
-    let words = words.iter().map(|word| again::quoted(word));
+    let words = words.iter().map(shell::word);
     std::iter::once("fsot".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
 }
 

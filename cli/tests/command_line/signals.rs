@@ -7,8 +7,8 @@ use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use fsot::SampleTable;
 use fsot::files::Metadata;
+use fsot::{Extent, SampleTable};
 use serde_json::Value;
 use tempfile::tempdir;
 
@@ -44,12 +44,18 @@ pub(super) fn listening(child: &Child) {
     if !cfg!(target_os = "linux") {
         return sleep(Duration::from_secs(5));
     }
-    wait_until("no handler", || {
-        let status = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
-        let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap_or("0").trim();
-        // SIGHUP, the last to be listened to.
-        u64::from_str_radix(caught, 16).unwrap_or(0) & 1 == 1
-    });
+    wait_until("no handler", || listens(child));
+}
+
+/// As far as the system tells.
+fn listens(child: &Child) -> bool {
+    if !cfg!(target_os = "linux") {
+        return true;
+    }
+    let status = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
+    let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap_or("0").trim();
+    // SIGHUP, the last to be listened to.
+    u64::from_str_radix(caught, 16).unwrap_or(0) & 1 == 1
 }
 
 /// What comes of a run of hours that a signal ends.
@@ -170,6 +176,38 @@ fn an_inspection_ends_at_once() {
     signal(&child, "TERM");
     assert_eq!(child.wait_with_output().unwrap().status.signal(), Some(15));
     assert_eq!(names(home.path()), ["table.json", "table.npy"]);
+}
+
+/// Many files, and one that takes long: nothing of them is left, and what was there stays.
+#[test]
+fn an_export_that_is_broken_off_leaves_nothing() {
+    let home = tempdir().unwrap();
+    let table = SampleTable::white_noise(Extent::animation(48, 256, 256), 4, 0).unwrap();
+    table.save(home.path().join("table.npy")).unwrap();
+    fs::write(home.path().join("a.csv"), "old").unwrap();
+    let is_pending = |name: &String| name.starts_with(".fsot-");
+    for (to, name) in SIGNALS.iter().zip(["slices --out a.png", "csv --out a.csv", "c --bits 16 --out a.h"]) {
+        let child = start(home.path(), &format!("export table.npy --to {name}"));
+        wait_until("no file", || names(home.path()).iter().any(is_pending) && listens(&child));
+        signal(&child, to);
+        let begin = Instant::now();
+        let output = child.wait_with_output().unwrap();
+        let (out, err) = texts(&output);
+        assert_eq!((output.status.code(), out.as_str()), (Some(1), ""), "{name}: {err}");
+        assert!(err.contains("a signal came before all files were complete: nothing is written"), "{err}");
+        assert!(begin.elapsed() < PATIENCE / 6, "{name}");
+        assert_eq!(names(home.path()), ["a.csv", "table.npy"], "{name}");
+        assert_eq!(fs::read_to_string(home.path().join("a.csv")).unwrap(), "old");
+    }
+    // Files that are complete are kept, and what they cost is not waited for.
+    let child = start(home.path(), "export table.npy --to ktx2 --out a.ktx2");
+    wait_until("no texture", || home.path().join("a.ktx2.json").exists());
+    signal(&child, "INT");
+    let output = child.wait_with_output().unwrap();
+    let (out, _) = texts(&output);
+    assert_eq!(output.status.code(), STOPPED, "{out}");
+    assert!(out.ends_with("what the numbers cost: not measured, since a signal came\n"), "{out}");
+    assert_eq!(names(home.path()), ["a.csv", "a.ktx2", "a.ktx2.json", "table.npy"]);
 }
 
 /// `nohup` asks for a run that outlives its terminal.

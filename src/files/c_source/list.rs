@@ -97,5 +97,5 @@ fn no_number<R: BufRead>(token: Token, lexer: &Lexer<R>) -> ImportError {
         Token::Mark(mark) => char::from(mark).into(),
         _ => String::from_utf8_lossy(&lexer.word).into_owned(),
     };
-    ImportError::Number { line: lexer.line, text: shortened(text) }
+    ImportError::Literal { line: lexer.line, text: shortened(text) }
 }

@@ -310,7 +310,7 @@ mod tests {
 
     #[test]
     fn what_is_no_array_of_numbers_is_located() {
-        let number = |line, text: &str| ImportError::Number { line, text: text.into() };
+        let number = |line, text: &str| ImportError::Literal { line, text: text.into() };
         for (text, problem) in [
             ("int a[] = {1, b};", number(1, "b")),
             ("int a[] = {1,\n2 3};", number(2, "3")),
@@ -318,6 +318,7 @@ mod tests {
             ("int a[] = {(int)1};", number(1, "(")),
             ("int a[] = {[3] = 1};", number(1, "[")),
             ("int a[] = {- {1}};", number(1, "{")),
+            ("char a[] = {'x'};", number(1, "'")),
             ("char a[] = {\"x\"};", number(1, "\"")),
             ("int a[] = {/* \n\n */ 09};", number(3, "09")),
             ("int a[] = {{1, 2}, {3}};", ImportError::Lists { line: 1, given: 1, expected: 2 }),
@@ -336,7 +337,7 @@ mod tests {
         }
         assert_eq!(refusal(&format!("int a[] = {}", "{".repeat(100_000))), ImportError::Nesting { line: 1 });
         let long = "1".repeat(100_000);
-        let ImportError::Number { text, .. } = refusal(&format!("int a[] = {{{long}}}")) else { panic!() };
+        let ImportError::Literal { text, .. } = refusal(&format!("int a[] = {{{long}}}")) else { panic!() };
         assert!(text.len() < 80, "{text}");
     }
 }

@@ -16,14 +16,18 @@ const SIGMA_PX: f32 = 2.1;
 /// What is farther apart counts as independent: the autocorrelation is below 1/50 of its peak there.
 const REACH_PX: i64 = 6;
 
-/// The levels of a table, in the order of its values.
-pub(super) fn levels(table: &SampleTable, levels: u32) -> Vec<u16> {
+/// The levels of a table, in the order of its values. Asked before each frame, `stops` may break that off;
+/// what comes then is worth nothing.
+pub(super) fn levels(table: &SampleTable, levels: u32, stops: &mut dyn FnMut() -> bool) -> Vec<u16> {
     let scale = levels as f32;
     let mut found: Vec<u16> = table.values().iter().map(|value| (value * scale) as u16).collect();
     let Extent { frames, height, width, .. } = table.extent();
     let mut field = Field::new(height, width);
     for dim in 0..table.dims() {
         for frame in 0..frames {
+            if stops() {
+                return found;
+            }
             diffuse(table, &mut found, scale, frame, dim, &mut field);
         }
     }

@@ -3,7 +3,7 @@
 use half::f16;
 
 use super::diffuse;
-use super::options::{Depth, ExportOptions, Format, Rounding};
+use super::options::{Depth, ExportOptions, Rounding};
 use crate::table::SampleTable;
 use crate::table::domain::BELOW_ONE;
 use crate::table::extent::Extent;
@@ -20,13 +20,14 @@ pub(super) struct Encoded<'a> {
 }
 
 impl<'a> Encoded<'a> {
-    pub(super) fn new(table: &'a SampleTable, options: &ExportOptions) -> Self {
+    /// Worth nothing if `stops` has said so.
+    pub(super) fn new(
+        table: &'a SampleTable,
+        options: &ExportOptions,
+        stops: &mut dyn FnMut() -> bool,
+    ) -> Self {
         let depth = options.depth();
-        let levels = match (options.rounding, depth.levels()) {
-            (Rounding::Diffuse, Some(levels)) => Some(diffuse::levels(table, levels)),
-            _ => None,
-        };
-        Self { table, depth, levels }
+        Self { table, depth, levels: levels(table, depth, options.rounding, stops) }
     }
 
     pub(super) fn extent(&self) -> Extent {
@@ -42,14 +43,7 @@ impl<'a> Encoded<'a> {
         if let Some(levels) = &self.levels {
             return levels[at].into();
         }
-        let value = self.table.values()[at];
-        match self.depth {
-            // Exact: a value below 1 by a power of two.
-            Depth::U8 => (value * 256.0) as u32,
-            Depth::U16 => (value * 65536.0) as u32,
-            Depth::Half => u32::from(f16::from_f32(value).min(HALF_BELOW_ONE).to_bits()),
-            Depth::F32 => value.to_bits(),
-        }
+        number(self.depth, self.table.values()[at])
     }
 
     /// What a reader makes of it.
@@ -95,10 +89,46 @@ impl SampleTable {
     /// ```
     #[must_use]
     pub fn quantized(&self, depth: Depth, rounding: Rounding) -> Self {
-        let options = ExportOptions { depth: Some(depth), rounding, ..ExportOptions::new(Format::Ktx2) };
-        let encoded = Encoded::new(self, &options);
-        let values = (0..self.values().len()).map(|at| encoded.decoded(at)).collect();
-        Self::trusted(self.extent(), self.dims(), values)
+        self.clone().into_quantized(depth, rounding)
+    }
+
+    /// The same in the place of this table, without room for another.
+    #[must_use]
+    pub fn into_quantized(self, depth: Depth, rounding: Rounding) -> Self {
+        let levels = levels(&self, depth, rounding, &mut || false);
+        let (extent, dims) = (self.extent(), self.dims());
+        let mut values = self.into_values();
+        match levels {
+            Some(levels) => {
+                values.iter_mut().zip(levels).for_each(|(value, level)| *value = decode(depth, level.into()));
+            }
+            None => values.iter_mut().for_each(|value| *value = decode(depth, number(depth, *value))),
+        }
+        Self::trusted(extent, dims, values)
+    }
+}
+
+/// Levels that do not follow from a value alone.
+fn levels(
+    table: &SampleTable,
+    depth: Depth,
+    rounding: Rounding,
+    stops: &mut dyn FnMut() -> bool,
+) -> Option<Vec<u16>> {
+    match (rounding, depth.levels()) {
+        (Rounding::Diffuse, Some(levels)) => Some(diffuse::levels(table, levels, stops)),
+        _ => None,
+    }
+}
+
+/// The number that follows from a value alone.
+fn number(depth: Depth, value: f32) -> u32 {
+    match depth {
+        // Exact: a value below 1 by a power of two.
+        Depth::U8 => (value * 256.0) as u32,
+        Depth::U16 => (value * 65536.0) as u32,
+        Depth::Half => u32::from(f16::from_f32(value).min(HALF_BELOW_ONE).to_bits()),
+        Depth::F32 => value.to_bits(),
     }
 }
 

@@ -17,9 +17,11 @@ mod png;
 pub(in crate::files) mod raw;
 mod record;
 pub(in crate::files) mod source;
+mod watch;
 
 use std::fmt;
 use std::io::{self, Seek, Write};
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use serde::{Serialize, Serializer};
@@ -28,6 +30,7 @@ use self::encode::Encoded;
 pub use self::options::{Depth, ExportOptions, Format, Rounding};
 use self::parts::Part;
 pub use self::record::{ExportRecord, RecordedFile};
+use self::watch::{Watch, Watched};
 use super::metadata::Hash;
 use super::whole::{self, WholeFile};
 use crate::error::ExportError;
@@ -118,19 +121,62 @@ impl SampleTable {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn export(&self, path: impl AsRef<Path>, options: &ExportOptions) -> Result<Exported, ExportError> {
+        self.export_observed(path, options, |_| ControlFlow::Continue(()))
+    }
+
+    /// The same, telling the share of the files that are complete, before each file and some ten times per
+    /// megabyte. Once all are complete they take their names, and nothing breaks that off.
+    ///
+    /// # Errors
+    /// As [`export`](Self::export); [`ExportError::Stopped`] if `observe` breaks off: then every file is as
+    /// it was, and nothing is left beside them.
+    ///
+    /// ```
+    /// use std::ops::ControlFlow;
+    ///
+    /// use fsot::files::{ExportError, ExportOptions, Format};
+    /// use fsot::{Extent, SampleTable};
+    ///
+    /// let folder = tempfile::tempdir()?;
+    /// let table = SampleTable::white_noise(Extent::animation(4, 16, 16), 2, 0)?;
+    /// let options = ExportOptions::new(Format::Slices);
+    /// let stopped = table.export_observed(folder.path().join("mask.png"), &options, |share| {
+    ///     if share < 0.5 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    /// });
+    /// assert!(matches!(stopped, Err(ExportError::Stopped)));
+    /// assert_eq!(std::fs::read_dir(folder.path())?.count(), 0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn export_observed(
+        &self,
+        path: impl AsRef<Path>,
+        options: &ExportOptions,
+        mut observe: impl FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<Exported, ExportError> {
         let path = path.as_ref();
+        let watch = Watch::new(&mut observe);
         let plan = options.plan(path, self.extent(), self.dims())?;
         let record_path = ExportRecord::path_beside(path);
-        let cannot_write = |path: &Path, source| ExportError::Io { path: path.into(), source };
+        let cannot_write = |path: &Path, source| match watch.stopped() {
+            true => ExportError::Stopped,
+            false => ExportError::Io { path: path.into(), source },
+        };
         let text_path = options.text_path(&plan[0].0);
         let paths = plan.iter().map(|(path, _)| path).chain(&text_path).chain([&record_path]);
         for path in paths {
             whole::check(path).map_err(|error| cannot_write(path, error))?;
         }
-        let encoded = Encoded::new(self, options);
+        let encoded = Encoded::new(self, options, &mut || watch.stops());
         let mut complete = Vec::with_capacity(plan.len() + 1);
-        for (path, part) in &plan {
-            let file = WholeFile::write(path, |out| write(out, path, options.format, &encoded, part));
+        for (done, (path, part)) in plan.iter().enumerate() {
+            watch.reach(done as f64 / plan.len() as f64);
+            if watch.stops() {
+                return Err(ExportError::Stopped);
+            }
+            let file = WholeFile::write(path, |out| {
+                let mut out = Watched { out, watch: &watch, bytes: 0 };
+                write(&mut out, path, options.format, &encoded, part)
+            });
             complete.push(file.map_err(|error| cannot_write(path, error))?);
         }
         if let Some(text_path) = &text_path {
@@ -145,6 +191,10 @@ impl SampleTable {
             out.write_all(b"\n")
         });
         complete.push(beside.map_err(|error| cannot_write(&record_path, error))?);
+        watch.reach(1.0);
+        if watch.stops() {
+            return Err(ExportError::Stopped);
+        }
         whole::commit_all(complete).map_err(|(path, error)| cannot_write(&path, error))?;
         let files = plan.into_iter().map(|(path, _)| path).chain(text_path).collect();
         Ok(Exported { files, record_path, record })

@@ -24,6 +24,7 @@ use super::dtype::Dtype;
 use super::header::{Fault, GIVE_NPY};
 use super::layout::{Axis, Layout};
 use super::levels::Scale;
+use super::shell;
 use super::text::Unread;
 use crate::error::{ImportError, TableError};
 use crate::table::SampleTable;
@@ -269,8 +270,8 @@ impl fmt::Display for ImportOptions {
             ("spp", number(self.spp)),
             ("dims", number(self.dims)),
             ("channels", number(self.channels)),
-            ("dtype", self.dtype.map(|dtype| quoted(&dtype.to_string()))),
-            ("array", self.array.as_deref().map(quoted)),
+            ("dtype", self.dtype.map(|dtype| shell::word(dtype.to_string()))),
+            ("array", self.array.as_deref().map(shell::word)),
         ];
         let flags = flags.into_iter().filter_map(|(flag, value)| Some(format!("--{flag} {}", value?)));
         out.write_str(&flags.collect::<Vec<_>>().join(" "))
@@ -322,23 +323,6 @@ pub(super) fn advice(path: &Path) -> String {
     }
     let flags = options.to_string();
     let flags = if flags.is_empty() { flags } else { format!("{flags} ") };
-    let [from, to] = [path, &path.with_extension("table.npy")].map(quoted_path);
+    let [from, to] = [path, &path.with_extension("table.npy")].map(shell::path);
     format!("run `fsot import {from} {flags}--out {to}`, or SampleTable::import with these options")
-}
-
-/// A path as a shell reads it.
-fn quoted_path(path: &Path) -> String {
-    let path = path.to_string_lossy();
-    // A name that begins like a flag is none behind its folder.
-    if path.starts_with('-') { quoted(&format!("./{path}")) } else { quoted(&path) }
-}
-
-/// A word as a shell reads it.
-fn quoted(word: &str) -> String {
-    let is_plain = |c: char| c.is_alphanumeric() || "/._-+:@%,".contains(c);
-    if !word.is_empty() && word.chars().all(is_plain) {
-        word.into()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
-    }
 }

@@ -16,8 +16,12 @@ pub(super) const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1a\n";
 /// For what is not the pixels themselves, such as profiles.
 const MOST_BYTES: usize = 64 << 20;
 
+/// Bytes that a picture has for one of its file at most: as deflate packs, with bits of a palette that become
+/// four bytes.
+const MOST_PACKED: u64 = 1032 * 32;
+
 /// Reads the picture: `[y, x, channel]`. A palette gives way to its colours, and transparent colours stay.
-pub(super) fn read(file: impl BufRead + Seek) -> Result<Source, Problem> {
+pub(super) fn read(file: impl BufRead + Seek, length: u64) -> Result<Source, Problem> {
     let damaged = |source: DecodingError| damaged(&source.to_string());
     let mut decoder = Decoder::new_with_limits(file, Limits { bytes: MOST_BYTES });
     decoder.set_ignore_text_chunk(true);
@@ -33,8 +37,14 @@ pub(super) fn read(file: impl BufRead + Seek) -> Result<Source, Problem> {
     let (color, depth) = reader.output_color_type();
     let channels = color.samples();
     let count = width.saturating_mul(height).saturating_mul(channels);
+    let size = reader.output_buffer_size().unwrap_or(usize::MAX);
+    // Nothing is asked for that the file cannot fill.
+    if size as u64 > length.saturating_mul(MOST_PACKED) {
+        let reason = format!("{width} x {height} pixels are more than its {length} bytes can hold");
+        return Err(self::damaged(&reason).into());
+    }
     let mut values = reserved(count)?;
-    let mut bytes = reserved(reader.output_buffer_size().unwrap_or(usize::MAX))?;
+    let mut bytes = reserved(size)?;
     bytes.resize(bytes.capacity(), 0_u8);
     let frame = reader.next_frame(&mut bytes).map_err(damaged)?;
     // What follows is checked too.

@@ -135,7 +135,7 @@ fn picture(file: &mut File, bytes: u64) -> Result<Option<Source>, Problem> {
     }
     #[cfg(feature = "image")]
     if start == super::png::SIGNATURE {
-        return super::png::read(BufReader::new(file)).map(Some);
+        return super::png::read(BufReader::new(file), bytes).map(Some);
     }
     #[cfg(feature = "image")]
     if start.starts_with(&super::exr::SIGNATURE) {

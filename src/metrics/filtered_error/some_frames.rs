@@ -8,7 +8,7 @@ use super::{FilteredError, sums_of_squares};
 use crate::error::RangeError;
 use crate::kernel::fft::Transform;
 use crate::kernel::{Kernel, Tap, TemporalKernel};
-use crate::metrics::coordinates::Coordinates;
+use crate::metrics::errors::Errors;
 use crate::metrics::{Integrands, MeasureError, Ratios, Samples};
 use crate::table::extent::Extent;
 
@@ -42,8 +42,8 @@ impl FilteredError {
         kernel: &Kernel,
         frames: usize,
     ) -> Result<Self, MeasureError> {
-        let points = Coordinates::gather(samples, dims)?.fitting("an integrand", integrands.dims())?;
-        let extent = points.extent;
+        let errors = Errors::of(samples, dims, "an integrand", integrands.dims())?;
+        let extent = errors.extent;
         let is_good = (1..=extent.frames).contains(&frames);
         RangeError::check(is_good, "the number of frames", frames as f64, "from 1 to those of the table")?;
         let filter = Filter::new(&extent, kernel)?;
@@ -60,13 +60,12 @@ impl FilteredError {
                         let sites = seen * plane..(seen + 1) * plane;
                         scratch.data.fill(Complex64::default());
                         for (site, error) in
-                            scratch.data.iter_mut().zip(points.errors_in(sites.clone(), &pair[0]))
+                            scratch.data.iter_mut().zip(errors.within(sites.clone(), &pair[0]))
                         {
                             site.re = error;
                         }
                         if let Some(second) = pair.get(1) {
-                            for (site, error) in scratch.data.iter_mut().zip(points.errors_in(sites, second))
-                            {
+                            for (site, error) in scratch.data.iter_mut().zip(errors.within(sites, second)) {
                                 site.im = error;
                             }
                         }
