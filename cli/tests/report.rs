@@ -8,7 +8,7 @@ use std::process::{Command, Output};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use fsot::files::Metadata;
-use fsot::{Extent, SampleTable};
+use fsot::{Config, Extent, Optimizer, SampleTable, Until};
 use serde_json::Value;
 use tempfile::tempdir;
 
@@ -213,6 +213,11 @@ fn metadata_of_others_make_nothing_again() {
     says("The metadata beside it are not of this table");
     fs::write(home.path().join("table.json"), "{\"format\": ").unwrap();
     says("The metadata beside it cannot be used");
+    // A run that has gone on from another table.
+    let mut optimizer = Optimizer::from_table(Config::new(values.extent(), 2), values.clone()).unwrap();
+    let run = optimizer.run(Until::SlicesPerClass(4)).unwrap();
+    optimizer.table().save_with(&path, &optimizer.metadata(&run)).unwrap();
+    says("No command makes it again: its run did not begin with the white noise");
     // A configuration of a megabyte is not copied.
     let long = Value::String("x".repeat(1 << 20));
     values.save_with(&path, &Metadata::new(values.extent(), 2, 7, long)).unwrap();

@@ -143,6 +143,49 @@ pub struct RunRecord {
     /// Number of the next sweep.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub next_sweep: Option<u64>,
+    /// What the run began with. `None` in files of before 2026-11-28; see [`beginning`](Self::beginning).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start: Option<RunStart>,
+}
+
+/// What a run began with: whether its configuration and its work say all that it takes to make it again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum RunStart {
+    /// With the white noise of its seed, for the whole table: a run of the same work makes it again.
+    WhiteNoise,
+    /// With points from elsewhere, or that other steps or runs had moved before or have moved since: metadata
+    /// do not hold them.
+    Elsewhere,
+    /// With a demand, which metadata do not hold either.
+    Demand,
+}
+
+impl RunRecord {
+    /// What the run began with, as far as is known: white noise, unless it says otherwise or its steps and
+    /// sweeps are numbered otherwise than from the first on.
+    ///
+    /// ```
+    /// use fsot::files::RunStart;
+    /// use fsot::{Config, Extent, Optimizer, Until};
+    ///
+    /// let mut optimizer = Optimizer::new(Config::new(Extent::still(16, 16), 2))?;
+    /// let first = optimizer.run(Until::Sweeps(2))?;
+    /// assert_eq!(optimizer.metadata(&first).run.beginning(), RunStart::WhiteNoise);
+    /// let second = optimizer.run(Until::Sweeps(2))?;
+    /// assert_eq!(optimizer.metadata(&second).run.beginning(), RunStart::Elsewhere);
+    /// # Ok::<(), fsot::ConfigError>(())
+    /// ```
+    pub fn beginning(&self) -> RunStart {
+        let Self { steps, sweeps, next_step, next_sweep, start, .. } = *self;
+        let is_later = next_step.is_some_and(|next| next > steps);
+        let is_later = is_later || next_sweep.is_some_and(|next| next > sweeps);
+        match start.unwrap_or(RunStart::WhiteNoise) {
+            RunStart::WhiteNoise if is_later => RunStart::Elsewhere,
+            start => start,
+        }
+    }
 }
 
 impl Metadata {

@@ -21,6 +21,6 @@ pub use self::dtype::Dtype;
 pub use self::export::{Depth, ExportOptions, ExportRecord, Exported, Format, RecordedFile, Rounding};
 pub use self::import::{ImportOptions, Imported};
 pub use self::layout::Axis;
-pub use self::metadata::{BoundEstimate, BoundRecord, KernelTaps, Metadata, RunRecord};
+pub use self::metadata::{BoundEstimate, BoundRecord, KernelTaps, Metadata, RunRecord, RunStart};
 pub use self::whole::WholeFile;
 pub use crate::error::{ExportError, FormatError, ImportError, TableError};

@@ -10,6 +10,7 @@ use sha2::{Digest, Sha256};
 
 use super::course::{Course, MOST_COUNTED};
 use super::frame::displaced;
+use super::record::Past;
 use crate::config::{Config, Work};
 use crate::error::CheckpointError;
 use crate::files::{WholeFile, hexadecimal, little_endian};
@@ -96,6 +97,9 @@ pub(super) struct Counters {
     pub fresh: bool,
     /// Steps that made the moments.
     pub descended: i32,
+    /// What moved the points; it is about metadata alone.
+    #[serde(default)]
+    pub past: Past,
 }
 
 /// Where an optimiser is, but for its coordinates.

@@ -17,6 +17,7 @@ pub use self::checkpoint::Checkpoint;
 use self::checkpoint::Identity;
 use self::course::Course;
 pub use self::plan::Plan;
+use self::record::Past;
 pub use self::report::{RunReport, SliceStep, StepReport};
 use crate::classes::Demand;
 use crate::config::{Config, Role, Until, check_step};
@@ -56,6 +57,9 @@ pub struct Optimizer {
     swept: u64,
     /// Whether the points are still those that this optimiser began with.
     fresh: bool,
+    past: Past,
+    /// Whether a demand left something out.
+    partial: bool,
     /// The run that goes on, and the points of the frame that it begins with, if it is there.
     resumed: Option<(Course, Option<Vec<f32>>)>,
     /// Found when it is first needed.
@@ -131,7 +135,8 @@ impl Optimizer {
     pub fn for_demand(config: Config, demand: &Demand) -> Result<Self, ConfigError> {
         check_room(&config)?;
         let objective = Objective::for_demand(&config, demand)?;
-        Self::with(config, objective)
+        let partial = !objective.is_whole(&config);
+        Ok(Self { partial, ..Self::with(config, objective)? })
     }
 
     fn with(config: Config, objective: Objective) -> Result<Self, ConfigError> {
@@ -147,6 +152,8 @@ impl Optimizer {
             sweeper: None,
             swept: 0,
             fresh: true,
+            past: Past::Nothing,
+            partial: false,
             resumed: None,
             identity: OnceLock::new(),
             points,
@@ -192,7 +199,7 @@ impl Optimizer {
     /// A `rate` or a `balance` outside of `0..=1e6` ([`ConfigError::Range`]). Nothing is changed then.
     pub fn step(&mut self, rate: f64, balance: f64) -> Result<SliceStep, ConfigError> {
         check_step(rate, balance)?;
-        self.resumed = None;
+        (self.resumed, self.past) = (None, Past::Other);
         Ok(rayon::scope(|_| self.step_in_pool(rate, balance)))
     }
 
@@ -227,7 +234,7 @@ impl Optimizer {
     /// closed form ([`ConfigError::NotInClosedForm`]). Nothing is changed then.
     pub fn sweep(&mut self, rate: f64, balance: f64) -> Result<f64, ConfigError> {
         check_step(rate, balance)?;
-        self.resumed = None;
+        (self.resumed, self.past) = (None, Past::Other);
         rayon::scope(|_| self.sweep_in_pool(rate, balance))
     }
 

@@ -2,7 +2,8 @@
 
 use super::{Optimizer, RunReport};
 use crate::config::{EndReason, Work};
-use crate::files::{KernelTaps, Metadata, RunRecord};
+use crate::files::{KernelTaps, Metadata, RunRecord, RunStart};
+use serde::{Deserialize, Serialize};
 
 impl Optimizer {
     /// The metadata of the table as it is now, after a run: configuration, kernels, and how much work was
@@ -26,9 +27,42 @@ impl Optimizer {
         };
         Metadata {
             kernels: (0..self.objective.terms.len()).filter_map(taps).collect(),
-            run: RunRecord { next_step: Some(self.steps), next_sweep: Some(self.swept), ..report.into() },
+            run: RunRecord {
+                next_step: Some(self.steps),
+                next_sweep: Some(self.swept),
+                start: Some(self.start()),
+                ..report.into()
+            },
             ..Metadata::new(self.config.extent, self.config.dims, self.config.seed, configuration)
         }
+    }
+
+    fn start(&self) -> RunStart {
+        match self.past {
+            _ if self.partial => RunStart::Demand,
+            Past::Nothing | Past::Run => RunStart::WhiteNoise,
+            Past::Other => RunStart::Elsewhere,
+        }
+    }
+}
+
+/// What has moved the points so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Past {
+    /// Nothing: they are the white noise of their seed.
+    Nothing,
+    /// One run from there.
+    Run,
+    /// Anything else. Checkpoints of before 2026-11-28 don't know it.
+    #[default]
+    Other,
+}
+
+impl Past {
+    /// With one run more.
+    pub(super) fn and_a_run(self) -> Self {
+        if self == Self::Nothing { Self::Run } else { Self::Other }
     }
 }
 

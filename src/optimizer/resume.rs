@@ -2,6 +2,7 @@
 
 use super::Optimizer;
 use super::checkpoint::{Checkpoint, Counters, Identity, Place, damaged};
+use super::record::Past;
 use crate::config::Config;
 use crate::error::{CheckpointError, ConfigError};
 use crate::files::{Metadata, RunRecord};
@@ -67,7 +68,7 @@ impl Optimizer {
         self.points = table.into_values();
         self.slices = Slices::new(self.config.descent, self.points.len());
         (self.sweeper, self.resumed) = (None, None);
-        self.fresh = false;
+        (self.fresh, self.past) = (false, Past::Other);
         Ok(())
     }
 
@@ -97,7 +98,7 @@ impl Optimizer {
             let here = here.hash.clone();
             return Err(CheckpointError::OtherObjective { checkpoint: header.hash, here });
         }
-        let Counters { steps, swept, fresh, descended } = header.place;
+        let Counters { steps, swept, fresh, descended, past } = header.place;
         let mut slices = Slices::new(self.config.descent, self.points.len());
         let is_whole = points.len() == self.points.len();
         // The frame that an animation begins with is swept: nothing has descended yet.
@@ -116,14 +117,14 @@ impl Optimizer {
             _ => return Err(damaged("it holds a single frame of an animation")),
         }
         (self.slices, self.steps, self.swept, self.fresh) = (slices, steps, swept, fresh);
-        self.sweeper = None;
+        (self.sweeper, self.past) = (None, past);
         Ok(())
     }
 
     pub(super) fn place(&self) -> Place<'_> {
         let walker = self.slices.walker();
-        let Self { steps, swept, fresh, .. } = *self;
-        Place { counters: Counters { steps, swept, fresh, descended: walker.steps() }, walker }
+        let Self { steps, swept, fresh, past, .. } = *self;
+        Place { counters: Counters { steps, swept, fresh, descended: walker.steps(), past }, walker }
     }
 
     /// A frame whose sweeps have brought it here.

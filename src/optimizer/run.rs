@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use super::course::Course;
 use super::frame::displaced;
+use super::record::Past;
 use super::report::{Current, RunReport, StepReport};
 use super::{Optimizer, SliceStep};
 use crate::config::{EndReason, Until, Work};
@@ -64,6 +65,8 @@ impl Optimizer {
     ) -> Result<RunReport, ConfigError> {
         rayon::scope(|_| {
             let Some((course, of_frame)) = self.resumed.take() else {
+                // Its report is of no work.
+                self.past = if self.past == Past::Nothing { Past::Nothing } else { Past::Other };
                 let nothing = Course::new(Work::default(), Until::Sweeps(0));
                 return self.follow(nothing, None, &mut observe);
             };
@@ -93,6 +96,7 @@ impl Optimizer {
         let work = if frame.is_some() { work } else { Work { frame_sweeps: 0, ..work } };
         self.resumed = None;
         self.slices = Slices::new(self.config.descent, self.points.len());
+        self.past = self.past.and_a_run();
         self.follow(Course::new(work, until), frame, observe)
     }
 

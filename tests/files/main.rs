@@ -10,7 +10,9 @@ mod saving;
 use std::fs;
 use std::path::Path;
 
-use fsot::files::{BoundEstimate, BoundRecord, FormatError, KernelTaps, Metadata, RunRecord, TableError};
+use fsot::files::{
+    BoundEstimate, BoundRecord, FormatError, KernelTaps, Metadata, RunRecord, RunStart, TableError,
+};
 use fsot::kernel::Tap;
 use fsot::{Extent, SampleTable};
 use tempfile::{TempDir, tempdir};
@@ -99,6 +101,7 @@ fn metadata(table: &SampleTable) -> Metadata {
             seconds: 12.75,
             next_step: Some(65),
             next_sweep: None,
+            start: Some(RunStart::Elsewhere),
         },
         ..Metadata::new(table.extent(), table.dims(), u64::MAX - 1, configuration)
     }

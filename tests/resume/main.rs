@@ -2,6 +2,7 @@
 
 mod damage;
 mod kills;
+mod origin;
 
 use std::ops::ControlFlow;
 

@@ -7,6 +7,7 @@ use fsot::kernel::SpatialKernel;
 use fsot::{Config, Kernel};
 
 use crate::inspect::{Beside, temporal_flag};
+use crate::table::obstacle;
 
 /// How a table came to be, for a reader.
 pub struct Origin {
@@ -66,7 +67,12 @@ impl Origin {
             }
             words += ".";
         }
+        let obstacle = obstacle(run).filter(|_| config.is_some());
         let command = match (config.is_some(), path.to_str()) {
+            _ if obstacle.is_some() => {
+                words += &format!(" No command makes it again: {}.", obstacle.unwrap_or_default());
+                None
+            }
             (false, _) => {
                 words += " Their configuration is none of fsot table, so there is no command that makes \
                           the table again.";

@@ -13,8 +13,8 @@ const AFFORDABLE: usize = 2_000_000_000;
 
 /// Test integrands per family of a table that is small enough.
 const USUAL: usize = 256;
-/// Fewer would be a matter of luck.
-const FEWEST: usize = 8;
+/// Fewer would be a matter of luck, even over all families.
+const FEWEST: usize = 4;
 
 /// Frames over which filtered errors are averaged where there are many.
 const FEW: usize = 2;

@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::figures;
-use super::page::{Figure, kind, picture, plot, points, room, section, table};
+use super::page::{Figure, breakable, kind, picture, plot, points, room, section, table};
 use super::panels::{self, Panels};
 use super::{Column, Report, chart};
 use crate::Failure;
@@ -24,19 +24,20 @@ pub fn introduction(report: &Report) -> Markup {
         }
         (table("the tables and their most important figures", &html! {
             thead { tr {
-                th scope="col" { "table" } th scope="col" { "shape" }
-                th scope="col" { a href="#filter" { "filter" } }
+                th scope="col" { "table" }
                 th.number scope="col" { a href="#filtered-error" { "filtered error" } }
                 th.number scope="col" { a href="#bias" { "bias" } }
                 th.number scope="col" { a href="#bound" { "bound" } }
+                th scope="col" { "shape" } th scope="col" { a href="#filter" { "filter" } }
             } }
             tbody { @for column in &report.columns { tr {
-                th scope="row" { (column.label) }
-                td.long { (typeset(&shape(&column.inspection.table))) }
-                td.long { (typeset(&filter(&column.inspection))) }
+                // What a narrow screen shows first.
+                th scope="row" { (breakable(&column.label)) }
                 td.number { (figures::ratio(column.error())) }
                 td.number { (figures::ratio(column.shown().bias.table.mean.mean)) }
                 td.number { (figures::ratio(column.bound.ratio_to_white_noise)) }
+                td.long { (typeset(&shape(&column.inspection.table))) }
+                td.long { (typeset(&filter(&column.inspection))) }
             } } }
         }))
         p {

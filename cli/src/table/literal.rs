@@ -3,7 +3,7 @@
 use fsot::Config;
 use fsot::classes::{Classes, FilterForm};
 use fsot::config::{Descent, DimensionGroup, Domain, Schedule, Slicing, Sweeps};
-use fsot::files::RunRecord;
+use fsot::files::{RunRecord, RunStart};
 use fsot::kernel::SpatialKernel;
 
 use super::recipe::{Recipe, Sweeping};
@@ -25,6 +25,7 @@ impl Recipe {
             None => Self { companions: Some(config.companions), terms: Some(config.terms), ..literal },
         };
         if let Some(RunRecord { frame_sweeps, slices_per_class, sweeps, ended_early, steps, .. }) = run {
+            recipe.obstacle = run.as_ref().and_then(obstacle);
             recipe.frame_sweeps = Some(frame_sweeps);
             recipe.slices_per_class = Some(slices_per_class);
             recipe.sweeps = Some(sweeps);
@@ -84,5 +85,17 @@ impl Recipe {
         self.temporal = temporal.map(Temporal);
         self.truncation = Some(kernel.truncation).filter(|truncation| *truncation != 1e-3);
         Some(self)
+    }
+}
+
+/// Why a run of this configuration and work does not make the table again.
+pub fn obstacle(run: &RunRecord) -> Option<&'static str> {
+    match run.beginning() {
+        RunStart::WhiteNoise => None,
+        RunStart::Demand => Some("it was optimised for a demand, which its metadata do not hold"),
+        _ => Some(
+            "its run did not begin with the white noise of its seed, and its metadata do not hold what it \
+             began with",
+        ),
     }
 }

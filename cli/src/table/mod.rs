@@ -15,6 +15,7 @@ use fsot::files::{BoundRecord, Metadata};
 use fsot::{Config, ConfigError, Optimizer, SampleTable, metrics};
 
 pub use self::flags::Arguments;
+pub use self::literal::obstacle;
 use self::plan::Planned;
 use self::summary::Summary;
 use crate::checkpoint::Writer;

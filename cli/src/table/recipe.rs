@@ -45,6 +45,9 @@ pub struct Recipe {
     /// Steps after which the run of a file ended early.
     #[serde(skip)]
     pub steps: Option<u64>,
+    /// Why the run of a file makes something else than its table.
+    #[serde(skip)]
+    pub obstacle: Option<&'static str>,
 }
 
 /// How slices move the samples.
@@ -151,7 +154,8 @@ impl Recipe {
     /// other words: a width of the Gaussian a kernel, terms all filters, an amount of work a time.
     ///
     /// # Errors
-    /// A flag that changes a part of what the file says as a whole.
+    /// A flag that changes a part of what the file says as a whole; the metadata of a table that their run
+    /// does not make again, unless flags say how long another is.
     pub fn over(self, mut file: Self, name: &Path) -> Result<Self, Failure> {
         let name = name.display();
         for (flag, key) in [("--sigma", "sigma"), ("--kernel", "kernel"), ("--temporal", "temporal")] {
@@ -188,6 +192,13 @@ impl Recipe {
         if self != Self::default() {
             // It was about that very table.
             file.steps = None;
+        }
+        if let (Some(obstacle), false) = (file.obstacle, self.says_how_long()) {
+            return Err(format!(
+                "the table of {name} cannot be made again: {obstacle}; say how long a run from white noise \
+                 is to be, as by --sweeps 100, for another table of its configuration"
+            )
+            .into());
         }
         if self.says_how_long() {
             let Self { seconds, slices_per_class, sweeps, frame_sweeps, .. } = &mut file;

@@ -4,10 +4,11 @@ use std::fs;
 use std::ops::ControlFlow;
 use std::path::Path;
 
+use fsot::classes::Demand;
 use fsot::config::{DimensionGroup, Domain, Schedule, Term, Work};
 use fsot::files::Metadata;
 use fsot::kernel::{SpatialKernel, TemporalKernel};
-use fsot::{Config, Extent, Kernel, Optimizer, Until};
+use fsot::{Config, Extent, Kernel, Optimizer, RunReport, Until};
 use serde_json::{Value, json};
 use tempfile::tempdir;
 
@@ -347,4 +348,45 @@ fn the_examples_of_the_documentation_work() {
     for key in keys.split(", ") {
         assert!(docs.contains(&format!("`{key}`")), "docs/configuration.md says nothing of {key}");
     }
+}
+
+/// Tables that no run from white noise makes: the command refuses them, and its advice is followed.
+#[test]
+fn metadata_of_what_went_on_are_refused() {
+    let home = tempdir().unwrap();
+    let config = Config::new(Extent::still(8, 8), 2);
+    let path = home.path().join("table.npy");
+    let refused = |words: &str| {
+        let (_, err) = texts(&output(home.path(), "--config table.json --no-bound --out again.npy"));
+        assert!(err.contains(words) && err.contains("--sweeps 100"), "{err}");
+        assert!(!home.path().join("again.npy").exists());
+        texts(&output(home.path(), "--config table.json --no-bound --seed 3 --out again.npy"));
+        assert!(!home.path().join("again.npy").exists());
+        succeed(home.path(), "--config table.json --no-bound --sweeps 100 --out other.npy");
+        let (other, of_other) = config_of(home.path(), "other.npy");
+        assert_eq!((other, of_other.run.sweeps), (config.clone(), 100));
+    };
+    let save = |optimizer: &Optimizer, report: &RunReport| {
+        optimizer.table().save_with(&path, &optimizer.metadata(report)).unwrap();
+    };
+    // What was made by another run before.
+    let mut optimizer = Optimizer::new(config.clone()).unwrap();
+    optimizer.run(Until::Sweeps(2)).unwrap();
+    let report = optimizer.run(Until::Sweeps(2)).unwrap();
+    save(&optimizer, &report);
+    refused("did not begin with the white noise");
+    // A part of the table.
+    let wants = (0..64).map(|site| site % 8 < 4).collect();
+    let demand = Demand::new([1, 8, 8], wants, vec![vec![0, 1]]).unwrap();
+    let mut optimizer = Optimizer::for_demand(config.clone(), &demand).unwrap();
+    let report = optimizer.run(Until::Sweeps(2)).unwrap();
+    save(&optimizer, &report);
+    refused("optimised for a demand");
+    // An older file, whose numbers show it.
+    let mut optimizer = Optimizer::new(config.clone()).unwrap();
+    let report = optimizer.run(Until::Sweeps(2)).unwrap();
+    let mut metadata = optimizer.metadata(&report);
+    (metadata.run.start, metadata.run.next_sweep) = (None, Some(8002));
+    optimizer.table().save_with(&path, &metadata).unwrap();
+    refused("did not begin with the white noise");
 }

@@ -16,6 +16,7 @@ use fsot::classes::Demand;
 use fsot::config::{Until, Work};
 use fsot::{Config, Extent, Optimizer, SampleTable};
 use fsot_lab::program::{self, Failure};
+use fsot_lab::say;
 
 /// What a demand for a part of a table costs.
 #[derive(Parser)]
@@ -45,8 +46,8 @@ fn run(&Arguments { runs, quick }: &Arguments) -> Result<(), Failure> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     for (extent, dims) in tables {
         let Extent { frames, spp, .. } = extent;
-        println!("\n{side}×{side}, {frames} frames, {spp} spp, {dims} dimensions\n");
-        println!("| demanded | share | slices | sweeps |\n|---|---|---|---|");
+        say!("\n{side}×{side}, {frames} frames, {spp} spp, {dims} dimensions\n")?;
+        say!("| demanded | share | slices | sweeps |\n|---|---|---|---|")?;
         let config = Config::new(extent, dims);
         let cases = cases(extent, dims)?;
         let mut seconds = vec![[(); 2].map(|()| Vec::new()); cases.len()];
@@ -70,13 +71,14 @@ fn run(&Arguments { runs, quick }: &Arguments) -> Result<(), Failure> {
         let medians: Vec<[f64; 2]> = seconds.into_iter().map(|engines| engines.map(median)).collect();
         for ((name, share, _), found) in cases.iter().zip(&medians) {
             let [slices, sweeps] = [0, 1].map(|engine| 100.0 * found[engine] / medians[0][engine]);
-            println!("| {name} | {:.1} % | {slices:.1} % | {sweeps:.1} % |", 100.0 * share);
+            say!("| {name} | {:.1} % | {slices:.1} % | {sweeps:.1} % |", 100.0 * share)?;
         }
         let [slices, sweeps] = medians[0].map(|seconds| 1000.0 * seconds);
-        println!(
+        say!(
             "\n(100 %: {slices:.1} ms for {} slices per class, {sweeps:.1} ms for {} sweeps)",
-            work[0], work[1]
-        );
+            work[0],
+            work[1]
+        )?;
     }
     Ok(())
 }

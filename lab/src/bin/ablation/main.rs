@@ -22,7 +22,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
-use fsot_lab::program;
+use fsot_lab::{program, say};
 
 use crate::case::{Failure, Row};
 use crate::factors::Factor;
@@ -81,12 +81,12 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         eprintln!("{}", plain::TITLE);
         report += &plain::section(&plain_case)?;
     }
-    println!("{report}");
+    let printed = say!("{report}");
     if let Some(out) = out {
         program::save(&out.join("ablation.md"), report.as_bytes())?;
     }
     for (title, rows) in &sections {
         rows.iter().try_for_each(Row::check).map_err(|error| format!("{title}: {error}"))?;
     }
-    Ok(())
+    Ok(printed?)
 }

@@ -10,6 +10,7 @@
 
 mod sheet;
 
+use std::io;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -23,6 +24,7 @@ use fsot_lab::render::{
     Comparison, Film, ImageFilter, Reference, Scales, Scene, compare, demand, error_spectrum, render,
 };
 use fsot_lab::samplers::{OwenSobol, Sampler, TableSampler, WhiteNoise};
+use fsot_lab::say;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::sheet::{Cell, Sheet};
@@ -159,8 +161,10 @@ fn run(args: &Args) -> Result<(), Failure> {
     }
     progress.finish_and_clear();
 
+    let path = args.out.join(format!("{}-{}spp.png", scene.name, args.spp));
+    contact_sheet(&scene, args, &entries, &reference, &temporal)?.picture().save(&path)?;
     let demand = demand(&scene, resolution)?;
-    println!(
+    say!(
         "{}, {}x{}, {} frame(s), {} spp, dimension groups {:?}, {:.0} % of the pixels demanded",
         scene.name,
         args.resolution,
@@ -169,11 +173,9 @@ fn run(args: &Args) -> Result<(), Failure> {
         args.spp,
         scene.dimension_groups(),
         100.0 * demand.share()
-    );
-    print_ratios(&entries);
-    let path = args.out.join(format!("{}-{}spp.png", scene.name, args.spp));
-    contact_sheet(&scene, args, &entries, &reference, &temporal)?.picture().save(&path)?;
-    println!("contact sheet: {}", path.display());
+    )?;
+    print_ratios(&entries)?;
+    say!("contact sheet: {}", path.display())?;
     Ok(())
 }
 
@@ -200,19 +202,23 @@ fn notes(table: &SampleTable, scene: &Scene, spp: u32) -> String {
     notes.join("; ")
 }
 
-fn print_ratios(entries: &[Entry]) {
+fn print_ratios(entries: &[Entry]) -> io::Result<()> {
     let width = entries.iter().map(|entry| entry.label.len()).max().unwrap_or(0);
-    println!("ratios to the expectation of white noise; lower is better");
-    println!("{:width$}    RMSE  relMSE  pRelMSE s=2.1 +-error  pRelMSE sd=2.1", "sampler");
+    say!("ratios to the expectation of white noise; lower is better")?;
+    say!("{:width$}    RMSE  relMSE  pRelMSE s=2.1 +-error  pRelMSE sd=2.1", "sampler")?;
     for Entry { label, note, ratios, .. } in entries {
-        println!(
+        say!(
             "{label:width$}  {:6.3}  {:6.3}  {:13.3}  {:6.3}  {:14.3}  {note}",
-            ratios.rmse, ratios.rel_mse, ratios.p_rel_mse, ratios.p_rel_mse_error, ratios.p_rel_mse_wide,
-        );
+            ratios.rmse,
+            ratios.rel_mse,
+            ratios.p_rel_mse,
+            ratios.p_rel_mse_error,
+            ratios.p_rel_mse_wide,
+        )?;
     }
     let floor = entries.iter().map(|entry| entry.ratios.floor).fold(0.0, f64::max);
-    println!("the reference's own error contributes {floor:.5} to pRelMSE ratios");
-    println!("s: exp(-r^2/2.1^2); sd: exp(-r^2/(2*2.1^2)); animations: after the eye's temporal filter");
+    say!("the reference's own error contributes {floor:.5} to pRelMSE ratios")?;
+    say!("s: exp(-r^2/2.1^2); sd: exp(-r^2/(2*2.1^2)); animations: after the eye's temporal filter")
 }
 
 /// A column per sampler, and the truth at the left.

@@ -72,11 +72,12 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut outcomes: Vec<Outcome> = Vec::new();
     for case in cases {
         let outcome = measure::measure(case)?;
-        speed_up::print(&outcome);
+        let printed = speed_up::print(&outcome);
         outcomes.push(outcome);
         // After each case, so that a run that is cut off keeps what it has.
         outcome::save_csv(&out.join("time_against_error.csv"), &outcomes)?;
         chart::save(&out.join("time_against_error.svg"), &outcomes)?;
+        printed?;
     }
     outcomes.iter().try_for_each(Outcome::check)
 }

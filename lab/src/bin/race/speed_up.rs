@@ -1,6 +1,9 @@
 //! How much sooner ours are at equal error.
 
+use std::io;
+
 use fsot_lab::judge::Quality;
+use fsot_lab::{program, say};
 
 use crate::outcome::{Curve, Outcome, Point};
 
@@ -26,53 +29,67 @@ enum Reach {
 /// Checkpoints of the published loop to compare at, from the last on.
 const CHECKPOINTS: usize = 4;
 
-pub fn print(Outcome { case, ours, published }: &Outcome) {
-    println!("\n## {}\n", case.name);
-    let Some(last) = published.points.last() else { return };
+pub fn print(Outcome { case, ours, published }: &Outcome) -> io::Result<()> {
+    say!("\n## {}\n", case.name)?;
+    let Some(last) = published.points.last() else { return Ok(()) };
     let pace = last.seconds / last.slices as f64 * 1e6;
-    print!("The published loop, {pace:.1} µs per slice on {} threads", rayon::current_num_threads());
+    program::print(format_args!(
+        "The published loop, {pace:.1} µs per slice on {} threads",
+        rayon::current_num_threads()
+    ))?;
     match case.published_program_us {
-        Some(program) => println!(
+        Some(program) => say!(
             " (the published program: {program} µs on two; at that pace the speed-ups below are {:.2} times \
              as large).",
             program / pace
-        ),
-        None => println!("."),
+        )?,
+        None => say!(".")?,
     }
-    println!(
+    say!(
         "It is compared at the errors that it reached; its last was {:.3} filtered, bound {:.3}, \
          bias {:.2}.\n",
-        last.quality.filtered, last.quality.bound, last.quality.bias
-    );
-    println!(
+        last.quality.filtered,
+        last.quality.bound,
+        last.quality.bias
+    )?;
+    say!(
         "| published loop: s | filtered | bound | bias | ours | s to its filtered error | speed-up \
          | our bias | s to its bound | speed-up | our bias |"
-    );
-    println!("|---|---|---|---|---|---|---|---|---|---|---|");
+    )?;
+    say!("|---|---|---|---|---|---|---|---|---|---|---|")?;
     let skipped = published.points.len().saturating_sub(CHECKPOINTS);
     for checkpoint in &published.points[skipped..] {
         for curve in ours {
-            print_row(checkpoint, curve);
+            print_row(checkpoint, curve)?;
         }
     }
+    Ok(())
 }
 
-fn print_row(Point { seconds, quality, .. }: &Point, curve: &Curve) {
+fn print_row(Point { seconds, quality, .. }: &Point, curve: &Curve) -> io::Result<()> {
     let Quality { filtered, bound, bias } = quality;
-    print!("| {} | {filtered:.3} | {bound:.3} | {bias:.2} | {} |", significant(*seconds), curve.method);
+    program::print(format_args!(
+        "| {} | {filtered:.3} | {bound:.3} | {bias:.2} | {} |",
+        significant(*seconds),
+        curve.method
+    ))?;
     let figures: [Figure; 2] = [|quality| quality.filtered, |quality| quality.bound];
     for figure in figures {
         match reach(&curve.points, figure, figure(quality)) {
             Reach::Sooner { seconds: ours, bias } => {
-                print!(" < {} | > {:.0} | {bias:.2} |", significant(ours), seconds / ours);
+                program::print(format_args!(
+                    " < {} | > {:.0} | {bias:.2} |",
+                    significant(ours),
+                    seconds / ours
+                ))?;
             }
             Reach::At { seconds: ours, bias } => {
-                print!(" {} | {:.0} | {bias:.2} |", significant(ours), seconds / ours);
+                program::print(format_args!(" {} | {:.0} | {bias:.2} |", significant(ours), seconds / ours))?;
             }
-            Reach::Never => print!(" not reached | | |"),
+            Reach::Never => program::print(format_args!(" not reached | | |"))?,
         }
     }
-    println!();
+    say!("")
 }
 
 /// Three digits.

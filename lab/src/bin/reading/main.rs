@@ -17,6 +17,7 @@ use fsot::kernel::{SpatialKernel, TemporalKernel};
 use fsot::metrics::{FilteredError, Integrands};
 use fsot::{Extent, Kernel, SampleTable};
 use fsot_lab::program::{self, Failure};
+use fsot_lab::say;
 
 use crate::ways::{Source, Way};
 
@@ -81,19 +82,19 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(format!("no way begins with {:?}: leave out --way to see all", arguments.way).into());
     }
 
-    println!(
+    say!(
         "{} frames, {uses} use(s) of {} number(s), {spp} sample(s) per pixel; ratios to white noise",
         extent.frames,
         table.dims()
-    );
-    println!("{:48} {:>9} {:>9} {:>9} {:>9}", "read", "one frame", "one pixel", "filtered", "all");
+    )?;
+    say!("{:48} {:>9} {:>9} {:>9} {:>9}", "read", "one frame", "one pixel", "filtered", "all")?;
     for way in ways {
         let read = way.read(&source, extent, uses)?;
         let [frame, pixel, both, all] = measure.errors(&read)?;
-        println!("{:48} {frame:9.3} {pixel:9.3} {both:9.3} {all:9.3}", way.name);
+        say!("{:48} {frame:9.3} {pixel:9.3} {both:9.3} {all:9.3}", way.name)?;
     }
-    println!("one frame: after exp(-r^2/2.1^2); one pixel: after the temporal kernel; filtered: after both");
-    println!("all: after exp(-r^2/2.1^2) and the mean of all frames");
+    say!("one frame: after exp(-r^2/2.1^2); one pixel: after the temporal kernel; filtered: after both")?;
+    say!("all: after exp(-r^2/2.1^2) and the mean of all frames")?;
     Ok(())
 }
 
