@@ -56,7 +56,7 @@ pub fn print(words: fmt::Arguments) -> io::Result<()> {
     out.write_fmt(words).and_then(|()| out.flush())
 }
 
-/// Prints a line, by [`program::print`].
+/// Prints a line, by [`program::print`](crate::program::print()).
 #[macro_export]
 macro_rules! say {
     ($($words:tt)*) => { $crate::program::print(format_args!("{}\n", format_args!($($words)*))) };

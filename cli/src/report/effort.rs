@@ -47,7 +47,7 @@ pub fn of(
     let filtered = some.map_or(frames, |few| few * seen.len());
     let families = 4;
     // Per pixel and integrand: values at its samples, and a transform or two.
-    let per_pixel = |dims: usize| 2 * spp * (1 + dims) + 12;
+    let per_pixel = |dims: usize| 3 * spp * (1 + dims) + 12;
     let groups = DimensionGroup::pairs_and_whole(table.dims());
     let of_pixels = groups.iter().map(|group| families * per_pixel(group.dims.len())).sum::<usize>();
     let affordable = |frames: usize| AFFORDABLE / (frames * height * width).saturating_mul(of_pixels).max(1);

@@ -200,7 +200,8 @@ pub fn spectra(report: &Report) -> Result<Markup, Failure> {
                 (kind("Over time: x and t", &xt, &html! {
                     p { "Along a row of pixels (to the right) and over the frames (down); zero is in the \
                          middle of either. The dark middle is error that a filter in space and time takes \
-                         away." }
+                         away. Slanted stripes are of a table that began as one frame, displaced from frame \
+                         to frame." }
                 }))
             }
             @if has_rings {
