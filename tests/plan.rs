@@ -34,9 +34,38 @@ fn a_plan_is_what_the_run_does() {
         assert_eq!(plan.slices > 0.0, report.slices > 0, "{until:?}");
         assert_eq!(plan.pairs > 0.0, report.work.sweeps > 0, "{until:?}");
         assert_eq!(plan.seconds > 0.0, report.steps > 0, "{until:?}: {plan:?}");
-        let table = 4 * optimizer.points().len();
-        assert!((table..table + (1 << 26)).contains(&plan.bytes), "{until:?}: {plan:?}");
     }
+}
+
+/// Of memory, the same with many dimensions as with few: peaks that the allocator has seen on one thread,
+/// which does all the work.
+#[test]
+fn a_plan_foresees_the_memory_of_a_run() {
+    let sweeps = |frame_sweeps, sweeps| Work { frame_sweeps, slices_per_class: 0, sweeps };
+    let slices = Work { slices_per_class: 1, ..Work::default() };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let mut far = Vec::new();
+    for (extent, dims, work) in [
+        (Extent::still(64, 64), 16, sweeps(0, 3)),
+        (Extent::still(64, 64), 2, sweeps(0, 3)),
+        (Extent::animation(16, 64, 64).with_spp(2), 8, sweeps(5, 1)),
+        (Extent::animation(16, 64, 64).with_spp(2), 8, sweeps(0, 1)),
+        (Extent::animation(32, 64, 64), 4, sweeps(0, 1)),
+        (Extent::animation(16, 64, 64), 2, slices),
+        (Extent::still(64, 64), 16, slices),
+    ] {
+        let config = Config::new(extent, dims);
+        let (planned, peak) = pool.install(|| {
+            let planned = Optimizer::new(config.clone()).unwrap().plan(Until::Work(work)).unwrap().bytes;
+            let run = || _ = Optimizer::new(config.clone()).unwrap().run(Until::Work(work)).unwrap();
+            (planned as f64 / 1e6, allocation_counter::measure(run).bytes_max as f64 / 1e6)
+        });
+        println!("{extent:?}, {dims} dimensions, {work:?}: {planned:.1} of {peak:.1} MB");
+        if !(0.78 * peak..1.25 * peak + 3.0).contains(&planned) {
+            far.push(format!("{extent:?}, {dims} dimensions, {work:?}: {planned:.1} of {peak:.1} MB"));
+        }
+    }
+    assert!(far.is_empty(), "{}", far.join("\n"));
 }
 
 /// Nothing moves while a plan is made, between runs and between steps alike.

@@ -53,6 +53,11 @@ impl Arguments {
         Some(Output { flag: "--checkpoint", path, endings: output::ANY })
     }
 
+    /// Whether any are written.
+    pub fn is_kept(&self) -> bool {
+        self.checkpoint.is_some() || self.resume.is_some()
+    }
+
     /// Starts to write them.
     pub fn writer(&self) -> Option<Writer> {
         let path = self.checkpoint.clone().or_else(|| self.resume.clone())?;

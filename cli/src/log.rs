@@ -4,8 +4,10 @@
 //! A row is written at once and as a whole, behind a header: whoever reads the file while the run goes on, or
 //! after it was killed, finds rows that are complete. Rows become rarer as the run goes on, so that one of a
 //! minute has some 400 of them and one of a day some 800. What costs time is only measured as far as all of
-//! it together takes some 2 % of the run; the steps are the same ones with a log and without.
+//! it together takes some 2 % of the run; the steps are the same ones with a log and without. A run of less
+//! than a second may spend 20 ms on what its table is worth at the end.
 
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -14,7 +16,7 @@ use std::time::{Duration, Instant};
 use fsot::classes::Classes;
 use fsot::metrics::{Bias, FilteredError, Integrands, MeasureError};
 use fsot::optimizer::StepReport;
-use fsot::{Config, Kernel, RunReport, SampleTable};
+use fsot::{Config, Extent, Kernel, RunReport, SampleTable};
 
 use crate::Failure;
 
@@ -30,8 +32,13 @@ const SPACING: f64 = 0.02;
 const LEAST_SPACING: Duration = Duration::from_millis(10);
 /// The same for what is measured.
 const MEASURE_SPACING: f64 = 0.1;
+/// What the table that a run ended with is worth may take so long, however short the run was.
+const LAST_WORTH: Duration = Duration::from_millis(20);
 /// Integrands of each family.
 const INTEGRANDS: usize = 4;
+/// Pixels over which the filtered error of an animation is averaged, or one frame: the more of them, the
+/// longer it takes.
+const PIXELS: usize = 1 << 13;
 
 /// A log on its way.
 #[derive(Debug)]
@@ -54,6 +61,8 @@ struct Worth {
     dims: Vec<usize>,
     kernel: Kernel,
     integrands: Integrands,
+    /// Frames that are enough, where they take less time than all.
+    frames: Option<usize>,
 }
 
 /// When something is measured again that takes its time.
@@ -82,6 +91,17 @@ impl Pacer {
         self.spent += begin.elapsed();
         self.next = elapsed.mul_f64(1.0 + MEASURE_SPACING);
         Some(measured)
+    }
+
+    /// Measures what a run ended with, unless it takes more than its share and more than this.
+    fn last<T>(
+        &mut self,
+        elapsed: Duration,
+        least: Duration,
+        measure: impl FnOnce() -> Option<T>,
+    ) -> Option<T> {
+        let room = elapsed.mul_f64(self.share).max(least);
+        if self.spent + self.reserve > room { None } else { measure() }
     }
 }
 
@@ -128,11 +148,13 @@ impl Log {
         self.row(step.step, elapsed, [Some(step.rate), Some(step.displacement), loss], worth);
     }
 
-    /// Writes the row of the table that the run ended with, whatever it costs.
+    /// Writes the row of the table that the run ended with; what it is worth, if there is time for it.
     pub fn finish(&mut self, report: &RunReport, table: &SampleTable) {
         if self.fault.is_none() {
-            let worth = self.worth.as_ref().and_then(|worth| worth.measure(table));
             let elapsed = report.elapsed.saturating_sub(self.spent());
+            let worth = self.worth.as_ref();
+            let worth =
+                worth.and_then(|worth| self.worths.last(elapsed, LAST_WORTH, || worth.measure(table)));
             self.row(report.steps, elapsed, [None; 3], worth);
         }
     }
@@ -169,6 +191,7 @@ impl Log {
                 let begun =
                     || std::fs::read(&self.path).is_ok_and(|text| text.starts_with(header.as_bytes()));
                 if self.is_resumed && begun() {
+                    cut_half_row(&self.path)?;
                     none.insert(File::options().append(true).open(&self.path)?)
                 } else {
                     let out = none.insert(File::create(&self.path)?);
@@ -189,16 +212,33 @@ impl Worth {
         let Some(term) = config.terms.iter().find(|term| filters(&term.classes)) else { return Ok(None) };
         let Classes::Lattice { kernel, .. } = term.classes.clone() else { return Ok(None) };
         let integrands = Integrands::random(term.dims.len(), INTEGRANDS, 0)?;
-        Ok(Some(Self { dims: term.dims.clone(), kernel, integrands }))
+        let Extent { frames, height, width, .. } = config.extent;
+        // A kernel that cannot be used is refused elsewhere.
+        let taps = kernel.taps(&config.extent).unwrap_or_default();
+        let seen = taps.iter().map(|tap| tap.dt).collect::<BTreeSet<_>>().len().max(1);
+        let enough = (PIXELS / (height * width).max(1)).max(1);
+        let frames = Some(enough).filter(|enough| enough * seen < frames);
+        Ok(Some(Self { dims: term.dims.clone(), kernel, integrands, frames }))
     }
 
     /// Filtered error and bias, as ratios to white noise.
     fn measure(&self, table: &SampleTable) -> Option<[f64; 2]> {
-        let Self { dims, kernel, integrands } = self;
-        let error = FilteredError::measure(table, dims, integrands, kernel).ok()?;
+        let Self { dims, kernel, integrands, frames } = self;
+        let error = match *frames {
+            Some(frames) => FilteredError::measure_frames(table, dims, integrands, kernel, frames),
+            None => FilteredError::measure(table, dims, integrands, kernel),
+        };
+        let error = error.ok()?;
         let bias = Bias::measure(table, dims, integrands).ok()?;
         Some([error.spatio_temporal.mean.mean, bias.table.mean.mean])
     }
+}
+
+/// Of a run that was killed, or whose disk was full: what comes next would become part of it.
+fn cut_half_row(path: &Path) -> io::Result<()> {
+    let text = std::fs::read(path)?;
+    let whole = text.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
+    if whole == text.len() { Ok(()) } else { File::options().write(true).open(path)?.set_len(whole as u64) }
 }
 
 fn cannot_write(path: &Path, error: &io::Error) -> String {

@@ -1,6 +1,7 @@
 //! `fsot plot`: curves of the logs of runs, as SVG.
 
 use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -56,6 +57,8 @@ struct Log {
     name: String,
     /// By column.
     rows: Vec<[Option<f64>; COLUMNS.len()]>,
+    /// Lines that are no rows.
+    spoiled: usize,
 }
 
 /// Draws the logs.
@@ -79,8 +82,15 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
 
     let mut console = Console::new(shared);
     let names: Vec<&str> = panels.iter().map(|(column, _)| *column).collect();
-    console.say(|words| writeln!(words, "{}: {}", out.display(), names.join(", ")));
-    console.figures(&json!({ "out": out.display().to_string(), "panels": names }));
+    console.say(|words| {
+        writeln!(words, "{}: {}", out.display(), names.join(", "))?;
+        logs.iter().filter(|log| log.spoiled > 0).try_for_each(|Log { name, spoiled, .. }| {
+            let lines = if *spoiled == 1 { "line is" } else { "lines are" };
+            writeln!(words, "{name}: {spoiled} {lines} no row of a log, and left out")
+        })
+    });
+    let spoiled: Vec<usize> = logs.iter().map(|log| log.spoiled).collect();
+    console.figures(&json!({ "out": out.display().to_string(), "panels": names, "spoiled_lines": spoiled }));
     console.end(Ended::Done)
 }
 
@@ -92,17 +102,27 @@ impl Log {
         let is_file = std::fs::metadata(path).map_err(unreadable)?.is_file();
         let file = is_file.then(|| File::open(path).map_err(unreadable)).transpose()?;
         let no_log = || format!("{name} is no log: give a file that `fsot table --log` has written");
-        let mut reader = csv::Reader::from_reader(file.ok_or_else(no_log)?);
-        if reader.headers().map_err(|_| no_log())? != COLUMNS.as_slice() {
+        let header = format!("{}\n", COLUMNS.join(","));
+        let mut file = file.ok_or_else(no_log)?;
+        let mut start = vec![0; header.len()];
+        if file.read_exact(&mut start).is_err() || start != header.as_bytes() {
             return Err(no_log().into());
         }
+        let mut rest = Vec::new();
+        file.read_to_end(&mut rest).map_err(unreadable)?;
+        // A disk may have spoiled any byte.
+        let text = String::from_utf8_lossy(&rest);
         let mut rows = Vec::new();
-        for record in reader.records() {
-            // The last row of a run that was killed by a full disk.
-            let Ok(record) = record else { break };
-            rows.push(std::array::from_fn(|column| record.get(column).and_then(|text| text.parse().ok())));
+        let mut spoiled = 0;
+        for row in text.split_inclusive('\n') {
+            match row.strip_suffix('\n').map(|row| read(row.trim_end_matches('\r'))) {
+                Some(Some(row)) => rows.push(row),
+                Some(None) => spoiled += 1,
+                // The last one of a run that was killed, or whose disk was full.
+                None => {}
+            }
         }
-        Ok(Self { name, rows })
+        Ok(Self { name, rows, spoiled })
     }
 
     /// Logarithms of time and figure, where both have one.
@@ -127,6 +147,19 @@ impl Log {
             Some(more) => format!("…{}", self.name.chars().skip(more + 1).collect::<String>()),
         }
     }
+}
+
+/// Numbers by column, of which any but the first three may be missing; `None` of what is no row.
+fn read(line: &str) -> Option<[Option<f64>; COLUMNS.len()]> {
+    let mut row = [None; COLUMNS.len()];
+    let mut fields = line.split(',');
+    for (column, place) in row.iter_mut().enumerate() {
+        let field = fields.next()?;
+        if !(field.is_empty() && column > 2) {
+            *place = Some(field.parse::<f64>().ok()?);
+        }
+    }
+    fields.next().is_none().then_some(row)
 }
 
 fn draw(svg: &mut String, logs: &[Log], panels: &[&(&str, &str)]) -> Result<(), Failure> {

@@ -92,8 +92,8 @@ impl Optimizer {
             let sweeper = self.sweeper()?;
             pairs += sweeps as f64 * sweeper.pairs();
             steps = steps.saturating_add(sweeps.saturating_mul(sweeper.steps() as u64));
-            // Ranks by which marginals are settled at the end.
-            let ranks = 2 * size_of::<u32>() * self.config.extent.samples();
+            // Samples and their ranks, by which marginals are settled at the end.
+            let ranks = 3 * size_of::<u32>() * self.config.extent.samples();
             peak = peak.max(self.sweeper()?.bytes() + besides.max(ranks));
         }
         let fixed = LAWS + THREAD * rayon::current_num_threads();

@@ -66,6 +66,11 @@ impl Balance {
         Self { parts, line_buffers, mode_buffers, turns, lines }
     }
 
+    /// Bytes of the buffers that it has worked in.
+    pub(super) fn bytes(&self) -> usize {
+        self.line_buffers.bytes() + self.mode_buffers.bytes()
+    }
+
     /// Turns per sweep.
     pub(super) fn turns(&self) -> usize {
         self.turns

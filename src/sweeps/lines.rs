@@ -8,6 +8,7 @@ use super::reflect;
 use super::tiles::{Cell, CellRow, Tiles};
 use crate::laws::SquareLaw;
 use crate::simd::{LANES, Row};
+use crate::table::extent::bytes_of;
 
 /// A direction in one or two dimensions, and the law of the cube there.
 #[derive(Clone, Copy, Debug)]
@@ -26,6 +27,12 @@ pub(super) struct Line {
 pub(super) struct LineBuffers {
     counts: Vec<u32>,
     motions: Vec<f32>,
+}
+
+impl LineBuffers {
+    pub(super) fn bytes(&self) -> usize {
+        bytes_of(&self.counts) + bytes_of(&self.motions)
+    }
 }
 
 /// Parts of a table that are counted apart, whatever the number of threads.

@@ -18,7 +18,7 @@ use super::lines::PARTS;
 use super::reflect;
 use super::tiles::{Cell, CellRow, Tiles};
 use crate::simd::{LANES, Row};
-use crate::table::extent::MOST_DIMS;
+use crate::table::extent::{MOST_DIMS, bytes_of};
 
 /// Products of cosines in some dimensions of a table.
 #[derive(Clone, Debug)]
@@ -79,6 +79,12 @@ pub(super) struct ModeBuffers {
     totals: Vec<f64>,
     /// By frame.
     means: Vec<f32>,
+}
+
+impl ModeBuffers {
+    pub(super) fn bytes(&self) -> usize {
+        bytes_of(&self.sums) + bytes_of(&self.totals) + bytes_of(&self.means)
+    }
 }
 
 impl Modes {

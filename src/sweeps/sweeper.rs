@@ -179,7 +179,7 @@ impl Sweeper {
     /// Bytes of all buffers that grow with the table.
     pub(crate) fn bytes(&self) -> usize {
         let scattered = self.scattered.as_ref().map_or(0, Scattered::bytes);
-        self.tiles.bytes() + scattered + bytes_of(&self.order) + bytes_of(&self.pulls)
+        self.tiles.bytes() + self.balance.bytes() + scattered + bytes_of(&self.order) + bytes_of(&self.pulls)
     }
 
     /// Pairs of samples that a sweep looks at.

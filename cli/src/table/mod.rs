@@ -16,7 +16,7 @@ use fsot::{Config, ConfigError, Optimizer, SampleTable, metrics};
 
 pub use self::flags::Arguments;
 pub use self::literal::obstacle;
-use self::plan::Planned;
+use self::plan::{Besides, Planned};
 use self::summary::Summary;
 use crate::checkpoint::Writer;
 use crate::console::{self, Console};
@@ -96,7 +96,7 @@ struct Start {
 
 /// What is asked for; `None` where only the plan was, which is printed.
 fn start(arguments: &Arguments) -> Result<Option<Start>, Failure> {
-    let Arguments { checkpoint, dry_run, shared, .. } = arguments;
+    let Arguments { checkpoint, dry_run, log, shared, .. } = arguments;
     let advised = |error: ConfigError| advice::with_flags(error.into(), advice::of_table);
     if let Some(checkpoint) = checkpoint.resumed()? {
         shared.start_threads()?;
@@ -127,8 +127,10 @@ fn start(arguments: &Arguments) -> Result<Option<Start>, Failure> {
         let course = Course::New(recipe.until());
         return Ok(Some(Start { optimizer, course, last_step: recipe.steps }));
     }
+    let besides =
+        Besides { checkpoints: checkpoint.is_kept(), log: log.is_some(), bound: !arguments.no_bound };
     let plan = optimizer.plan(recipe.until()).map_err(advised)?;
-    let planned = Planned::new(&optimizer, &plan, recipe.steps);
+    let planned = Planned::new(&optimizer, &plan, recipe.steps, besides);
     let mut console = Console::new(shared);
     console.say(|out| planned.words(out));
     console.figures(&planned);

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use fsot::classes::Classes;
-use fsot::config::{Role, Term, Work};
+use fsot::config::{Descent, Role, Term, Work};
 use fsot::optimizer::Plan;
 use fsot::{Config, Extent, Optimizer};
 use serde::Serialize;
@@ -40,8 +40,16 @@ struct PlannedTerm {
     weight: f64,
 }
 
+/// What the command does besides the run, which takes memory.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Besides {
+    pub checkpoints: bool,
+    pub log: bool,
+    pub bound: bool,
+}
+
 impl Planned {
-    pub fn new(optimizer: &Optimizer, plan: &Plan, ends_after_steps: Option<u64>) -> Self {
+    pub fn new(optimizer: &Optimizer, plan: &Plan, ends_after_steps: Option<u64>, besides: Besides) -> Self {
         let Config { extent, dims, seed, .. } = *optimizer.config();
         let Extent { frames, height, width, spp } = extent;
         let objective = optimizer.objective();
@@ -51,6 +59,20 @@ impl Planned {
             let Term { dims, role, weight, .. } = term.clone();
             PlannedTerm { classes, count, taps, dims, role, weight }
         };
+        let table_bytes = size_of::<f32>() * extent.samples() * dims;
+        let moments = match optimizer.config().descent {
+            Descent::Barycentric { .. } => 0,
+            Descent::Sgd { .. } => 1,
+            _ => 2,
+        };
+        let Besides { checkpoints, log, bound } = besides;
+        // At the end the table is a copy. The system does not always get back what a run has used, so that all
+        // this is added. One checkpoint waits while another is written.
+        let copies = 1
+            + usize::from(bound)
+            + if checkpoints { 2 * (1 + moments) } else { 0 }
+            // A copy, and its coordinates as doubles.
+            + if log { 3 } else { 0 };
         Self {
             shape: [frames, height, width, spp, dims],
             seed,
@@ -62,8 +84,8 @@ impl Planned {
             pairs: plan.pairs,
             expected_seconds: plan.seconds,
             threads: rayon::current_num_threads(),
-            bytes: plan.bytes,
-            table_bytes: size_of::<f32>() * extent.samples() * dims,
+            bytes: plan.bytes + copies * table_bytes,
+            table_bytes,
         }
     }
 
@@ -72,28 +94,28 @@ impl Planned {
         let [frames, height, width, spp, dims] = self.shape;
         let mb = |bytes: usize| bytes as f64 / 1e6;
         let table = mb(self.table_bytes);
-        writeln!(
-            out,
-            "{width}×{height} pixels × {frames} frames, {spp} spp, {dims} dimensions: {table:.1} MB"
-        )?;
+        let [frames, dims] = [(frames, "frame"), (dims, "dimension")].map(counted);
+        writeln!(out, "{width}×{height} pixels × {frames}, {spp} spp, {dims}: {table:.1} MB")?;
         for PlannedTerm { classes, count, taps, dims, role, weight } in &self.terms {
             let role = match role {
                 Role::Descend => "descended",
                 Role::Balance => "balanced",
             };
-            let count = count.map_or(String::new(), |count| format!(", {count} classes"));
-            let taps = taps.map_or(String::new(), |taps| format!(" of {taps} taps"));
+            let classes_of =
+                |count| if count == 1 { ", 1 class".into() } else { format!(", {count} classes") };
+            let count = count.map_or(String::new(), classes_of);
+            let taps = taps.map_or(String::new(), |taps| format!(" of {}", counted((taps, "tap"))));
             writeln!(out, "  {role}: {classes}{count}{taps}, dimensions {dims:?}, weight {weight:.4}")?;
         }
         let Work { frame_sweeps, slices_per_class, sweeps } = self.work;
         let frame = if frame_sweeps > 0 { format!("--frame-sweeps {frame_sweeps} ") } else { String::new() };
         writeln!(
             out,
-            "{frame}--slices-per-class {slices_per_class} --sweeps {sweeps}: {} steps",
-            self.steps
+            "{frame}--slices-per-class {slices_per_class} --sweeps {sweeps}: {}",
+            counted((self.steps as usize, "step"))
         )?;
         if let Some(steps) = self.ends_after_steps {
-            writeln!(out, "ends after {steps} steps, as the run of that table did")?;
+            writeln!(out, "ends after {}, as the run of that table did", counted((steps as usize, "step")))?;
         }
         if self.slices > 0.0 {
             writeln!(out, "{:.3e} slices", self.slices)?;
@@ -102,8 +124,12 @@ impl Planned {
             writeln!(out, "{:.3e} pairs of samples", self.pairs)?;
         }
         writeln!(out, "{:.1} MB of memory at the peak, beside the program", mb(self.bytes))?;
-        writeln!(out, "{:.2} s expected, with {} threads", self.expected_seconds, self.threads)
+        writeln!(out, "{:.2} s expected, with {}", self.expected_seconds, counted((self.threads, "thread")))
     }
+}
+
+fn counted((count, what): (usize, &str)) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
 fn named(classes: &Classes, extent: &Extent) -> (&'static str, Option<usize>) {

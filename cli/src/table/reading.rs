@@ -25,6 +25,10 @@ const ALIKE: f64 = 0.75;
 /// What stands against it, in one sentence with file and line.
 pub fn recipe(path: &Path) -> Result<Recipe, Failure> {
     let text = Text::open(path)?;
+    if matches!(&text, Text::Json(text) if text.trim_start().starts_with('[')) {
+        let advice = "give keys and values, or a list of terms as --terms";
+        return Err(format!("{}: a list alone says nothing of a table: {advice}", path.display()).into());
+    }
     let of = |fault: Fault| Failure::from(fault.sentence(path));
     let kind: Kind = text.read().map_err(of)?;
     let known = Metadata::new(Extent::still(1, 1), 1, 0, serde_json::Value::Null).format;
@@ -133,13 +137,32 @@ impl Fault {
     }
 }
 
+/// What serde calls the types of numbers, and what people call them.
+const WORDS: [(&str, &str); 14] = [
+    ("internally tagged enum Schedule", "a schedule such as { shape = \"constant\", value = 1 }"),
+    ("expected usize", "expected a whole number of at least 0"),
+    ("expected u64", "expected a whole number of at least 0"),
+    ("expected u32", "expected a whole number of at least 0"),
+    ("expected i32", "expected a whole number"),
+    ("expected f64", "expected a number"),
+    ("expected f32", "expected a number"),
+    ("expected enum ", "expected the name of a "),
+    ("expected struct ", "expected a table of keys: "),
+    ("expected a sequence", "expected a list"),
+    ("invalid type: sequence", "invalid type: a list"),
+    ("invalid type: map", "invalid type: a table of keys"),
+    ("invalid type: integer", "invalid type: the whole number"),
+    ("invalid type: floating point", "invalid type: the number"),
+];
+
 /// Serde's words, with the name that was meant where one is alike.
 fn advised(reason: &str) -> String {
     let mut names = reason.split('`').skip(1).step_by(2);
     let kind = [("unknown field", "key"), ("unknown variant", "name")];
     let kind = kind.into_iter().find(|(words, _)| reason.starts_with(words));
     let (Some((_, kind)), Some(given)) = (kind, names.next()) else {
-        return format!("{reason}: correct that line");
+        let plain = WORDS.iter().fold(reason.to_owned(), |text, (serde, plain)| text.replace(serde, plain));
+        return format!("{plain}: correct that line");
     };
     let known: Vec<&str> = names.collect();
     let likeness = |name: &&str| strsim::jaro_winkler(given, name);
@@ -168,6 +191,14 @@ mod tests {
                 "unknown name 'quux': write one of box, taps",
             ),
             ("unknown field `x`, there are no fields", "unknown key 'x': leave it out"),
+            (
+                "invalid type: string \"a\", expected usize",
+                "string \"a\", expected a whole number of at least 0: correct that line",
+            ),
+            (
+                "invalid type: floating point `0.5`, expected internally tagged enum Schedule",
+                "the number `0.5`, expected a schedule such as { shape = \"constant\", value = 1 }",
+            ),
             ("missing field `dims`", "missing field `dims`: correct that line"),
         ] {
             assert!(advised(reason).contains(words), "{}", advised(reason));

@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use clap::ValueEnum;
-use fsot::classes::FilterForm;
+use fsot::classes::{Classes, FilterForm};
 use fsot::config::{Descent, DimensionGroup, Schedule, Slicing, Sweeps, Term, Work};
-use fsot::kernel::SpatialKernel;
+use fsot::kernel::{SpatialKernel, SpatialTap};
 use fsot::{Config, Extent, Kernel, Until};
 use serde::Deserialize;
 
-use super::stencil::Stencil;
+use super::stencil::{self, Stencil};
 use super::values::{Domains, Groups, KernelSource, Temporal};
 use crate::{Failure, temporal};
 
@@ -177,7 +177,16 @@ impl Recipe {
             )
             .into());
         }
-        if self.sigma.is_some() || self.kernel.is_some() {
+        let replaces_kernel = self.sigma.is_some() || self.kernel.is_some();
+        if self.temporal.is_some() && !replaces_kernel && file.kernel_has_frames() {
+            let problem = "has weights for each frame already: leave out the temporal kernel";
+            return Err(format!("the kernel of {name} {problem} (--temporal)").into());
+        }
+        if replaces_kernel {
+            // Weights for each frame stand for the temporal kernel as well.
+            if file.kernel_has_frames() || self.kernel_has_frames() {
+                file.temporal = None;
+            }
             (file.sigma, file.kernel) = (None, None);
         }
         if self.terms.is_some() {
@@ -204,7 +213,8 @@ impl Recipe {
             let Self { seconds, slices_per_class, sweeps, frame_sweeps, .. } = &mut file;
             (*seconds, *slices_per_class, *sweeps, *frame_sweeps) = (None, None, None, None);
         }
-        Ok(Self {
+        let is_resized = self.width.is_some() || self.height.is_some();
+        let recipe = Self {
             width: self.width.or(file.width),
             height: self.height.or(file.height),
             frames: self.frames.or(file.frames),
@@ -224,7 +234,30 @@ impl Recipe {
             frame_sweeps: self.frame_sweeps.or(file.frame_sweeps),
             // What no flag says.
             ..file
-        })
+        };
+        if is_resized {
+            for term in recipe.terms.iter().flatten() {
+                if let Classes::Lattice { kernel, .. } = &term.classes {
+                    fits(&kernel.spatial, &recipe.extent())?;
+                }
+            }
+        }
+        Ok(recipe)
+    }
+
+    /// Whether its weights are those of several frames, as far as that can be read.
+    fn kernel_has_frames(&self) -> bool {
+        match &self.kernel {
+            Some(KernelSource::Given(spatial)) => matches!(spatial, SpatialKernel::PerFrame(_)),
+            Some(KernelSource::Rows(stencil)) => stencil.over_time,
+            Some(KernelSource::File(path)) => Stencil::open(path).is_ok_and(|stencil| stencil.over_time),
+            None => false,
+        }
+    }
+
+    fn extent(&self) -> Extent {
+        let [width, height] = [self.width, self.height].map(|side| side.unwrap_or(64));
+        Extent { frames: self.frames.unwrap_or(10), height, width, spp: self.spp.unwrap_or(1) }
     }
 
     /// How long the run is.
@@ -251,9 +284,7 @@ impl Recipe {
     /// # Errors
     /// A file with a kernel that cannot be read or used.
     pub fn config(&self) -> Result<Config, Failure> {
-        let [width, height] = [self.width, self.height].map(|side| side.unwrap_or(64));
-        let (frames, spp) = (self.frames.unwrap_or(10), self.spp.unwrap_or(1));
-        let extent = Extent { frames, height, width, spp };
+        let extent = self.extent();
         let dims = self.dims.unwrap_or(2);
         let mut config = Config::new(extent, dims).with_seed(self.seed.unwrap_or(0));
         match &self.domain {
@@ -289,6 +320,7 @@ impl Recipe {
 
     fn kernels(&self, extent: &Extent) -> Result<Vec<Kernel>, Failure> {
         if let Some(kernels) = &self.kernels {
+            kernels.iter().try_for_each(|kernel| fits(&kernel.spatial, extent))?;
             return Ok(kernels.clone());
         }
         let given = self.temporal.as_ref().map(|Temporal(temporal)| temporal);
@@ -307,7 +339,10 @@ impl Recipe {
                 let sigma_px = self.sigma.unwrap_or(2.1);
                 Kernel::product(SpatialKernel::Gaussian { sigma_px }, temporal)
             }
-            Some(KernelSource::Given(spatial)) => Kernel::product(spatial.clone(), temporal),
+            Some(KernelSource::Given(spatial)) => {
+                fits(spatial, extent)?;
+                Kernel::product(spatial.clone(), temporal)
+            }
             Some(KernelSource::Rows(stencil)) => of(stencil, "the kernel")?,
             Some(KernelSource::File(path)) => {
                 let name = path.display().to_string();
@@ -319,4 +354,20 @@ impl Recipe {
         kernel.truncation = self.truncation.unwrap_or(kernel.truncation);
         Ok(vec![kernel])
     }
+}
+
+/// Refuses weights that would come in again from the other side of the tile.
+fn fits(kernel: &SpatialKernel, extent: &Extent) -> Result<(), Failure> {
+    let lists: &[Vec<SpatialTap>] = match kernel {
+        SpatialKernel::Taps(taps) => std::slice::from_ref(taps),
+        SpatialKernel::PerFrame(frames) => frames,
+        _ => return Ok(()),
+    };
+    let span = |offset: fn(&SpatialTap) -> i32| {
+        let offsets = || lists.iter().flatten().map(offset);
+        let (first, last) = (offsets().min().unwrap_or(0), offsets().max().unwrap_or(0));
+        (i64::from(last) - i64::from(first) + 1) as usize
+    };
+    let (rows, columns) = (span(|tap| tap.dy), span(|tap| tap.dx));
+    stencil::fits(rows, columns, extent).map_err(|problem| format!("the kernel {problem} (--kernel)").into())
 }

@@ -151,13 +151,7 @@ impl Stencil {
     /// side. Frames may be more than the animation has, which wraps.
     pub fn kernel(&self, extent: &Extent) -> Result<(SpatialKernel, Option<TemporalKernel>), String> {
         let [_, rows, columns] = self.shape;
-        let Extent { height, width, .. } = *extent;
-        if rows > height || columns > width {
-            return Err(format!(
-                "has {columns} × {rows} weights, more than the {width} × {height} pixels of a frame: \
-                 give a smaller kernel, or more --width and --height"
-            ));
-        }
+        fits(rows, columns, extent)?;
         let first = |size: usize| (size as i32 - 1) / 2;
         let offset =
             |at: usize| ((at / columns) as i32 - first(rows), (at % columns) as i32 - first(columns));
@@ -183,6 +177,18 @@ impl Stencil {
         let in_space = in_space.collect();
         Ok((SpatialKernel::PerFrame(in_space), Some(TemporalKernel::Taps(sums))))
     }
+}
+
+/// Refuses more weights than the tile has pixels.
+pub(super) fn fits(rows: usize, columns: usize, extent: &Extent) -> Result<(), String> {
+    let Extent { height, width, .. } = *extent;
+    if rows <= height && columns <= width {
+        return Ok(());
+    }
+    Err(format!(
+        "has {columns} × {rows} weights, more than the {width} × {height} pixels of a frame: \
+         give a smaller kernel, or more --width and --height"
+    ))
 }
 
 /// The array, if its numbers are of this type.

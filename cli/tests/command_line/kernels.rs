@@ -151,3 +151,34 @@ fn what_is_no_kernel_is_refused() {
         assert!(!at("table.npy").exists());
     }
 }
+
+/// A configuration that holds a kernel is not a way around what is refused of its file.
+#[test]
+fn kernels_in_configurations_are_checked_as_those_in_files() {
+    let home = tempdir().unwrap();
+    let at = |name: &str| home.path().join(name);
+    write_npy(at("deep.npy"), &Array3::<f64>::ones((2, 9, 5))).unwrap();
+    write_npy(at("flat.npy"), &array![[1.0, 2.0, 1.0]]).unwrap();
+    let shape = "--width 12 --height 10 --frames 4 --sweeps 1 --no-bound";
+    succeed(home.path(), &format!("{shape} --kernel deep.npy"));
+    fs::write(
+        at("taps.toml"),
+        "kernel = { taps = [{ dy = 0, dx = -9, weight = 1 }, { dy = 0, dx = 3, weight = 1 }] }",
+    )
+    .unwrap();
+    for (flags, words) in [
+        ("--config table.json --width 4", "has 5 × 9 weights, more than the 4 × 10 pixels of a frame"),
+        ("--config table.json --height 8", "has 5 × 9 weights, more than the 12 × 8 pixels of a frame"),
+        ("--config table.json --temporal ema:0.1", "leave out the temporal kernel (--temporal)"),
+        ("--config taps.toml --width 12", "has 13 × 1 weights, more than the 12 × 64 pixels"),
+    ] {
+        let (out, err) = texts(&output(home.path(), &format!("{flags} --dry-run --out new.npy")));
+        assert!(out.is_empty() && err.contains(words) && err.lines().count() == 1, "{flags}: {out}{err}");
+    }
+    // Another kernel does not inherit those weights, and one with frames needs no other.
+    for flags in ["--kernel flat.npy --temporal ema:0.1", "--sigma 1.5", "--kernel deep.npy", "--width 5"] {
+        succeed(home.path(), &format!("--config table.json {flags} --dry-run --out new.npy"));
+    }
+    succeed(home.path(), &format!("{shape} --temporal ema:0.2 --out ema.npy"));
+    succeed(home.path(), "--config ema.json --kernel deep.npy --dry-run --out new.npy");
+}

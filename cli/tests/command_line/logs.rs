@@ -159,3 +159,54 @@ fn point_sets_are_logged() {
     }
     assert!(names(home.path()).contains(&"curves.svg".to_owned()));
 }
+
+/// A full disk or a power cut leaves half a row; what is spoiled is left out, and said.
+#[test]
+fn half_rows_and_spoiled_ones_cost_no_others() {
+    let home = tempdir().unwrap();
+    let at = |name: &str| home.path().join(name);
+    let row = |step: usize| format!("{step},9,0.{step},1e-1,2e-2,3e-1,4e-1,5e-1\n");
+    let whole: String = (1..9).map(row).collect();
+    let text = |rows: &str| format!("{HEADER}\n{rows}");
+    let spoiled = whole.replace(&row(4), "4,9,0.4,1e-\u{0}?\n").replace(&row(6), "6,9\n");
+    for (rows, lines) in [
+        (whole.as_str(), 0),
+        // Half a row that something else follows.
+        (&whole.replace(&row(4), "4,9,0.45,9,0.5,1e-1,2e-2,3e-1,4e-1,5e-1\n"), 1),
+        (&spoiled, 2),
+        (&format!("{whole}9,9,0.9,1e-"), 0),
+    ] {
+        fs::write(at("a.csv"), text(rows)).unwrap();
+        let (out, _) = run(home.path(), "plot a.csv --json");
+        let line: serde_json::Value = serde_json::from_str(&out).unwrap();
+        assert_eq!(line["spoiled_lines"], serde_json::json!([lines]), "{rows}");
+        assert_eq!(line["panels"].as_array().unwrap().len(), 3, "{rows}");
+        let (out, _) = run(home.path(), "plot a.csv");
+        assert_eq!(out.contains("no row of a log"), lines > 0, "{out}");
+    }
+    // No rows are lost: the curve ends where it did.
+    let drawn = |rows: &str| {
+        fs::write(at("a.csv"), text(rows)).unwrap();
+        run(home.path(), "plot a.csv");
+        fs::read_to_string(at("curves.svg")).unwrap()
+    };
+    let points = |svg: &str| svg.split("<polyline").map(|line| line.matches(',').count()).sum::<usize>();
+    assert!(points(&drawn(&whole)) > points(&drawn(&spoiled)));
+
+    let run_flags = "--width 8 --height 8 --frames 1 --slices-per-class 40000 --no-bound --every 1ms";
+    succeed(home.path(), &format!("{run_flags} --checkpoint a.ck --log a.csv"));
+    let log = fs::read(at("a.csv")).unwrap();
+    fs::write(at("b.csv"), &log[..log.len() - 25]).unwrap();
+    succeed(home.path(), "--resume a.ck --no-bound --log b.csv");
+    assert!(rows(&at("b.csv")).len() >= 2);
+}
+
+/// Measuring a large table takes longer than a short run may spend.
+#[test]
+fn what_a_table_is_worth_is_left_out_where_it_takes_too_long() {
+    let home = tempdir().unwrap();
+    succeed(home.path(), "--frames 64 --sweeps 1 --frame-sweeps 0 --no-bound --log run.csv");
+    let rows = rows(&home.path().join("run.csv"));
+    let last = rows.last().unwrap();
+    assert!(last[0] == last[1] && last[6].is_nan(), "{last:?}");
+}

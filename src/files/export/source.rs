@@ -83,9 +83,11 @@ fn digits(values: &Encoded, part: &Part) -> String {
 fn title(path: &Path, part: &Part, values: &Encoded) -> String {
     let [frames, height, width, spp, dims] = part.shape(values.extent());
     let name = path.file_name().unwrap_or_default().to_string_lossy().replace(char::is_control, "?");
+    let counted = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
+    let [frames, samples, numbers] =
+        [(frames, "frame"), (spp, "sample"), (dims, "number")].map(|(count, what)| counted(count, what));
     format!(
-        "{name}: {frames} frames of {width} x {height} pixels with {spp} samples of {dims} numbers in \
-         [0, 1), by fsot {}.",
+        "{name}: {frames} of {width} x {height} pixels with {samples} of {numbers} in [0, 1), by fsot {}.",
         env!("CARGO_PKG_VERSION")
     )
 }
