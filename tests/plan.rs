@@ -61,7 +61,9 @@ fn a_plan_foresees_the_memory_of_a_run() {
             (planned as f64 / 1e6, allocation_counter::measure(run).bytes_max as f64 / 1e6)
         });
         println!("{extent:?}, {dims} dimensions, {work:?}: {planned:.1} of {peak:.1} MB");
-        if !(0.78 * peak..1.25 * peak + 3.0).contains(&planned) {
+        // Small buffers of each term are not counted; tabulated laws and what a thread needs are guessed at
+        // 3 MB, which small runs don't take.
+        if !(0.88 * peak..1.25 * peak + 3.0).contains(&planned) {
             far.push(format!("{extent:?}, {dims} dimensions, {work:?}: {planned:.1} of {peak:.1} MB"));
         }
     }

@@ -121,7 +121,7 @@ impl Log {
             is_resumed,
             fault: None,
             worth,
-            losses: Pacer::new(LOSS_SHARE, Duration::from_millis(2)),
+            losses: Pacer::new(LOSS_SHARE, Duration::from_millis(2).max(guess / 5)),
             worths: Pacer { reserve: guess, ..Pacer::new(WORTH_SHARE, 2 * guess) },
             next_row: Duration::ZERO,
             steps: 0,

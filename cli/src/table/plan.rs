@@ -40,6 +40,10 @@ struct PlannedTerm {
     weight: f64,
 }
 
+/// Bytes of the slices of a pixel and a term, from which those are picked that the loss of a log is estimated
+/// on. What is logged of the worth takes a copy of the table, and its coordinates as doubles.
+const LOSS: usize = 32;
+
 /// What the command does besides the run, which takes memory.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Besides {
@@ -66,13 +70,11 @@ impl Planned {
             _ => 2,
         };
         let Besides { checkpoints, log, bound } = besides;
-        // At the end the table is a copy. The system does not always get back what a run has used, so that all
-        // this is added. One checkpoint waits while another is written.
-        let copies = 1
-            + usize::from(bound)
-            + if checkpoints { 2 * (1 + moments) } else { 0 }
-            // A copy, and its coordinates as doubles.
-            + if log { 3 } else { 0 };
+        // At the end the table is a copy. The system does not always get back what a run has used, so that
+        // all this is added. One checkpoint waits while another is written.
+        let copies = 1 + usize::from(bound) + if checkpoints { 2 * (1 + moments) } else { 0 };
+        let descended = objective.terms().filter(|term| term.role == Role::Descend).count();
+        let logged = if log { LOSS * extent.sites() * descended + 3 * table_bytes } else { 0 };
         Self {
             shape: [frames, height, width, spp, dims],
             seed,
@@ -84,7 +86,7 @@ impl Planned {
             pairs: plan.pairs,
             expected_seconds: plan.seconds,
             threads: rayon::current_num_threads(),
-            bytes: plan.bytes + copies * table_bytes,
+            bytes: plan.bytes + copies * table_bytes + logged,
             table_bytes,
         }
     }
