@@ -1,9 +1,12 @@
 //! Values as the numbers of a file, one by one, so that no second table is needed.
 
+use std::io::{self, Write};
+
 use half::f16;
 
 use super::diffuse;
 use super::options::{Depth, ExportOptions, Rounding};
+use super::parts::Part;
 use crate::table::SampleTable;
 use crate::table::domain::BELOW_ONE;
 use crate::table::extent::Extent;
@@ -55,6 +58,25 @@ impl<'a> Encoded<'a> {
     pub(super) fn extend_little(&self, bytes: &mut Vec<u8>, positions: impl Iterator<Item = usize>) {
         let size = self.depth.bytes();
         positions.for_each(|at| bytes.extend_from_slice(&self.number(at).to_le_bytes()[..size]));
+    }
+
+    /// Writes the texels of a texture, least significant bytes first: its frames one after the other, row by
+    /// row; each ends with the channels that the table has no dimensions for.
+    pub(super) fn write_texels(&self, out: &mut impl Write, part: &Part, missing: &[u8]) -> io::Result<()> {
+        let [_, height, width, _, dims] = part.shape(self.extent());
+        let mut row = Vec::with_capacity(width * (dims * self.depth.bytes() + missing.len()));
+        for frame in part.frames.clone() {
+            for y in 0..height {
+                row.clear();
+                let mut positions = part.row(self.extent(), self.dims(), frame, y);
+                for _ in 0..width {
+                    self.extend_little(&mut row, positions.by_ref().take(dims));
+                    row.extend_from_slice(missing);
+                }
+                out.write_all(&row)?;
+            }
+        }
+        Ok(())
     }
 
     /// The bytes of numbers in the order of this machine.

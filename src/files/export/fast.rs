@@ -16,19 +16,7 @@ const MISSING: [f32; CHANNELS] = [0.0, 0.0, 0.0, 1.0];
 
 /// Writes the texels.
 pub(super) fn write(out: &mut impl Write, values: &Encoded, part: &Part) -> io::Result<()> {
-    let [_, height, width, _, dims] = part.shape(values.extent());
+    let [.., dims] = part.shape(values.extent());
     let missing: Vec<u8> = MISSING[dims..].iter().flat_map(|number| number.to_le_bytes()).collect();
-    let mut row = Vec::with_capacity(width * size_of_val(&MISSING));
-    for frame in part.frames.clone() {
-        for y in 0..height {
-            row.clear();
-            let mut positions = part.row(values.extent(), values.dims(), frame, y);
-            for _ in 0..width {
-                values.extend_little(&mut row, positions.by_ref().take(dims));
-                row.extend_from_slice(&missing);
-            }
-            out.write_all(&row)?;
-        }
-    }
-    Ok(())
+    values.write_texels(out, part, &missing)
 }

@@ -77,19 +77,7 @@ pub(super) fn write(out: &mut impl Write, values: &Encoded, part: &Part) -> io::
     out.write_all(&vec![0; start - HEADER - descriptor.len() - entries.len()])?;
     let one = one(depth).to_le_bytes();
     let fill = &one[..if channels == dims { 0 } else { depth.bytes() }];
-    let mut row = Vec::with_capacity(width * texel);
-    for frame in part.frames.clone() {
-        for y in 0..height {
-            row.clear();
-            let mut positions = part.row(values.extent(), values.dims(), frame, y);
-            for _ in 0..width {
-                values.extend_little(&mut row, positions.by_ref().take(dims));
-                row.extend_from_slice(fill);
-            }
-            out.write_all(&row)?;
-        }
-    }
-    Ok(())
+    values.write_texels(out, part, fill)
 }
 
 /// A pair of key and value, padded to whole words.

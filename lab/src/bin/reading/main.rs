@@ -83,7 +83,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 
     say!(
-        "{} frames, {uses} use(s) of {} number(s), {spp} sample(s) per pixel; ratios to white noise",
+        "frames {}, uses {uses}, dimensions {}, samples per pixel {spp}; ratios to white noise",
         extent.frames,
         table.dims()
     )?;
