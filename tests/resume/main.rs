@@ -1,5 +1,6 @@
 //! Runs that are resumed from a checkpoint end with the bits of runs that nothing has stopped.
 
+mod anew;
 mod damage;
 mod kills;
 mod origin;
