@@ -31,6 +31,7 @@
 //! all of them, [`log`] for what is written of it, [`draw`] for pictures, [`temporal`] for kernels as they
 //! are written on a command line.
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -75,11 +76,11 @@ impl Ended {
     }
 }
 
-impl From<Ended> for ExitCode {
-    fn from(ended: Ended) -> Self {
-        match ended {
-            Ended::Done => ExitCode::SUCCESS,
-            Ended::Stopped => ExitCode::from(3),
+impl Ended {
+    fn exit_code(self) -> u8 {
+        match self {
+            Self::Done => 0,
+            Self::Stopped => 3,
         }
     }
 }
@@ -135,7 +136,25 @@ Exit codes:
 
 /// Runs the command with the arguments of this process.
 pub fn main() -> ExitCode {
-    let ended = match Command::parse().verb {
+    command(std::env::args_os()).into()
+}
+
+/// Runs the command with these arguments, of which the first is its own name, and gives back the exit code.
+///
+/// ```
+/// assert_eq!(fsot_cli::command(["fsot", "--version"]), 0);
+/// assert_eq!(fsot_cli::command(["fsot", "table", "--spp", "few"]), 2);
+/// ```
+pub fn command<T: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = T>) -> u8 {
+    let command = match Command::try_parse_from(arguments) {
+        Ok(command) => command,
+        Err(help_or_error) => {
+            // Nobody is left to be told.
+            let _ = help_or_error.print();
+            return u8::try_from(help_or_error.exit_code()).unwrap_or(2);
+        }
+    };
+    let ended = match command.verb {
         Verb::Table(arguments) => table::run(&arguments),
         Verb::Inspect(arguments) => inspect::run(&arguments),
         Verb::Report(arguments) => report::run(&arguments),
@@ -145,10 +164,10 @@ pub fn main() -> ExitCode {
         Verb::Plot(arguments) => plot::run(&arguments),
     };
     match ended {
-        Ok(ended) => ended.into(),
+        Ok(ended) => ended.exit_code(),
         Err(error) => {
             console::complain(&*error);
-            ExitCode::FAILURE
+            1
         }
     }
 }

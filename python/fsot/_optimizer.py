@@ -1,0 +1,90 @@
+"""Runs that show progress, can be stopped, and keep what they have reached."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+
+from . import _fsot
+from ._progress import bar
+from ._table import Table
+
+
+class Interrupted(UserWarning):
+    """Ctrl-C has ended a run early. What it had reached is kept.
+
+    ``warnings.simplefilter("error", fsot.Interrupted)`` makes it an exception, for scripts that shall end.
+    """
+
+
+class Optimizer(_fsot.Optimizer):
+    """A table on its way.
+
+    Parameters
+    ----------
+    config : Config
+        What is optimised.
+    threads : int, optional
+        Threads to work on; one a core by default. The result doesn't depend on it.
+
+    Examples
+    --------
+    >>> import fsot
+    >>> optimizer = fsot.Optimizer(fsot.Config(16, 16))
+    >>> optimizer.run(fsot.Until.sweeps(10), progress=False).ended
+    'finished'
+    >>> optimizer.table()
+    <fsot.Table: 1 frame, 16 x 16 pixels, 1 sample of 2 dimensions>
+    """
+
+    def run(
+        self,
+        until: _fsot.Until | None = None,
+        callback: Callable[[_fsot.Step], bool | None] | None = None,
+        *,
+        progress: bool = True,
+    ) -> _fsot.Report:
+        """Takes steps along the schedules of the configuration.
+
+        Parameters
+        ----------
+        until : Until, optional
+            When to end; ``Until.usual()`` by default.
+        callback : callable, optional
+            Called with a `Step` after each step, on this thread; ``False`` ends the run. An exception ends it
+            as well, and is raised here.
+        progress : bool
+            Whether to show a bar, on a terminal or in a notebook.
+
+        Returns
+        -------
+        Report
+            What was done. After Ctrl-C it says ``"stopped"``, and a warning (`Interrupted`) says so too.
+            Whatever ended the run, `points` are what it had reached.
+        """
+        return self._follow(until or _fsot.Until.usual(), callback, progress)
+
+    def finish(
+        self,
+        callback: Callable[[_fsot.Step], bool | None] | None = None,
+        *,
+        progress: bool = True,
+    ) -> _fsot.Report:
+        """Goes on with the run that was resumed, to its end; parameters as of `run`."""
+        return self._follow(None, callback, progress)
+
+    def table(self) -> Table:
+        """The table as it is now, with the metadata of the last run."""
+        return Table(*self._table())
+
+    def _follow(self, until, callback, progress):
+        with bar(progress) as show:
+            report, error = self._run(until, callback, show)
+        if isinstance(error, KeyboardInterrupt):
+            warnings.warn(
+                Interrupted(f"interrupted after {report.steps} steps; what they have reached is kept"),
+                stacklevel=3,
+            )
+        elif error is not None:
+            raise error
+        return report

@@ -1,0 +1,179 @@
+//! All that determines a table but for the length of the run.
+
+use fsot::config::{DimensionGroup, Domain};
+use fsot::{Config, Extent, Kernel};
+use pyo3::prelude::*;
+use pyo3::types::PyList;
+
+use crate::errors::{OrPython, refused};
+use crate::json;
+use crate::kernel::{PyKernel, in_time};
+
+/// All that determines a table but for the length of the run.
+///
+/// Plain data that does not change: `with_...` methods return another one.
+#[pyclass(frozen, eq, name = "Config", module = "fsot", from_py_object)]
+#[derive(Clone, Debug, PartialEq)]
+pub struct PyConfig(pub Config);
+
+#[pymethods]
+impl PyConfig {
+    #[new]
+    #[pyo3(signature = (width = 64, height = 64, frames = 1, spp = 1, dims = 2, *, seed = 0))]
+    fn new(width: usize, height: usize, frames: usize, spp: usize, dims: usize, seed: u64) -> Self {
+        Self(Config::new(Extent { frames, height, width, spp }, dims).with_seed(seed))
+    }
+
+    /// Lengths of the axes `[frame, y, x, sample, dim]`.
+    #[getter]
+    fn shape(&self) -> (usize, usize, usize, usize, usize) {
+        let Extent { frames, height, width, spp } = self.0.extent;
+        (frames, height, width, spp, self.0.dims)
+    }
+
+    /// Seed of all random numbers.
+    #[getter]
+    fn seed(&self) -> u64 {
+        self.0.seed
+    }
+
+    /// The filters, of which `with_kernels` would make the same terms.
+    #[getter]
+    fn kernels(&self) -> Vec<PyKernel> {
+        self.0.kernels().into_iter().map(PyKernel).collect()
+    }
+
+    /// The same with another seed.
+    fn with_seed(&self, seed: u64) -> Self {
+        Self(self.0.clone().with_seed(seed))
+    }
+
+    /// The same for another filter.
+    fn with_kernel(&self, kernel: PyKernel) -> Self {
+        Self(self.0.clone().with_kernel(kernel.0))
+    }
+
+    /// The same for several filters at once.
+    fn with_kernels(&self, kernels: Vec<PyKernel>) -> Self {
+        let kernels: Vec<Kernel> = kernels.into_iter().map(|kernel| kernel.0).collect();
+        Self(self.0.clone().with_kernels(&kernels))
+    }
+
+    /// The same for other groups of dimensions that integrands consume together: lists of dimensions, or
+    /// pairs of such a list and a weight.
+    fn with_groups(&self, groups: &Bound<'_, PyAny>) -> PyResult<Self> {
+        Ok(Self(self.0.clone().with_groups(&groups_of(groups)?)))
+    }
+
+    /// The same on `"interval"`s or a `"torus"`: one for all dimensions, or a list with one for each.
+    fn with_domain(&self, domain: &Bound<'_, PyAny>) -> PyResult<Self> {
+        Ok(Self(with_domain(self.0.clone(), domain)?))
+    }
+
+    /// The same with or without the smaller filters that come with each kernel.
+    fn with_companions(&self, companions: bool) -> Self {
+        Self(self.0.clone().with_companions(companions))
+    }
+
+    /// Plain data, as in metadata.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        json::to_python(py, &self.0)
+    }
+
+    /// From plain data.
+    #[staticmethod]
+    fn from_dict(data: &Bound<'_, PyAny>) -> PyResult<Self> {
+        json::of_python(data).map(Self)
+    }
+
+    /// As JSON.
+    fn to_json(&self) -> PyResult<String> {
+        serde_json::to_string(&self.0).python()
+    }
+
+    /// From JSON.
+    #[staticmethod]
+    fn from_json(text: &str) -> PyResult<Self> {
+        json::of_text(text).map(Self)
+    }
+
+    fn __repr__(&self) -> String {
+        let (frames, height, width, spp, dims) = self.shape();
+        format!(
+            "Config(width={width}, height={height}, frames={frames}, spp={spp}, dims={dims}, seed={}, \
+             terms={})",
+            self.0.seed,
+            self.0.terms.len()
+        )
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (String,))> {
+        Ok((py.get_type::<Self>().getattr("from_json")?, (self.to_json()?,)))
+    }
+}
+
+/// What `fsot.table` says of a table.
+#[pyfunction]
+#[pyo3(signature = (width, height, frames, spp, dims, *, sigma, temporal, kernel, groups, domain, seed))]
+#[allow(clippy::too_many_arguments)] // they are the arguments of a function of Python
+pub fn configure(
+    width: usize,
+    height: usize,
+    frames: usize,
+    spp: usize,
+    dims: usize,
+    sigma: Option<f64>,
+    temporal: Option<&Bound<'_, PyAny>>,
+    kernel: Option<PyKernel>,
+    groups: Option<&Bound<'_, PyAny>>,
+    domain: Option<&Bound<'_, PyAny>>,
+    seed: u64,
+) -> PyResult<PyConfig> {
+    let mut config = Config::new(Extent { frames, height, width, spp }, dims).with_seed(seed);
+    if let Some(domain) = domain {
+        config = with_domain(config, domain)?;
+    }
+    if sigma.is_some() && kernel.is_some() {
+        return Err(refused("sigma and kernel say the same thing twice: leave out one of them"));
+    }
+    let usual = config.kernels().swap_remove(0);
+    let mut own = match (kernel, sigma) {
+        // One over frames has what it needs.
+        (Some(kernel), _) => kernel.0,
+        (None, Some(sigma)) => Kernel::gaussian(sigma).with_temporal(usual.temporal),
+        (None, None) => usual,
+    };
+    if temporal.is_some() {
+        own = own.with_temporal(in_time(temporal)?);
+    }
+    config = config.with_kernel(own);
+    if let Some(groups) = groups {
+        config = config.with_groups(&groups_of(groups)?);
+    }
+    Ok(PyConfig(config))
+}
+
+fn with_domain(config: Config, domain: &Bound<'_, PyAny>) -> PyResult<Config> {
+    match domain.cast::<PyList>() {
+        Ok(list) => Ok(config.with_domains(list.iter().map(|one| domain_of(&one)).collect::<PyResult<_>>()?)),
+        Err(_) => Ok(config.with_domain(domain_of(domain)?)),
+    }
+}
+
+fn domain_of(name: &Bound<'_, PyAny>) -> PyResult<Domain> {
+    match name.extract::<&str>()? {
+        "interval" => Ok(Domain::Interval),
+        "torus" => Ok(Domain::Torus),
+        other => Err(refused(format!("'{other}' is no domain: write interval or torus"))),
+    }
+}
+
+fn groups_of(groups: &Bound<'_, PyAny>) -> PyResult<Vec<DimensionGroup>> {
+    let group = |one: Bound<'_, PyAny>| -> PyResult<DimensionGroup> {
+        match one.extract::<(Vec<usize>, f64)>() {
+            Ok((dims, weight)) => Ok(DimensionGroup::new(dims).with_weight(weight)),
+            Err(_) => Ok(DimensionGroup::new(one.extract::<Vec<usize>>()?)),
+        }
+    };
+    groups.try_iter()?.map(|one| group(one?)).collect()
+}

@@ -1,0 +1,236 @@
+//! A table on its way.
+
+use std::ops::ControlFlow;
+use std::sync::{Mutex, MutexGuard, TryLockError};
+
+use fsot::files::Metadata;
+use fsot::optimizer::StepReport;
+use fsot::{Config, ConfigError, Optimizer, RunReport};
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+
+use crate::arrays::{table_of, table_to_numpy};
+use crate::checkpoint::PyCheckpoint;
+use crate::config::PyConfig;
+use crate::errors::OrPython;
+use crate::json;
+use crate::step::{Facts, PyStep, answer};
+use crate::until::Until;
+use crate::work::{Caller, Event, detached, watched};
+
+/// What a run did.
+#[pyclass(frozen, get_all, name = "Report", module = "fsot")]
+#[derive(Clone, Debug)]
+pub struct PyReport {
+    /// `"finished"`, `"converged"`, or `"stopped"` by a callback, an exception or Ctrl-C.
+    ended: String,
+    /// Steps taken.
+    steps: u64,
+    /// Slices drawn, over all terms.
+    slices: u64,
+    /// What the run was planned for. It gives the same table again, anywhere.
+    work: Until,
+    /// Seconds of the steps.
+    elapsed: f64,
+}
+
+#[pymethods]
+impl PyReport {
+    fn __repr__(&self) -> String {
+        let Self { ended, steps, work, elapsed, .. } = self;
+        format!("<{ended} after {steps} steps, {elapsed:.2} s: {}>", work.repr())
+    }
+}
+
+#[derive(Debug)]
+struct State {
+    optimizer: Optimizer,
+    report: Option<RunReport>,
+}
+
+/// A table on its way.
+#[pyclass(frozen, subclass, name = "Optimizer", module = "fsot._fsot")]
+#[derive(Debug)]
+pub struct PyOptimizer {
+    state: Mutex<State>,
+    threads: Option<usize>,
+}
+
+enum Told {
+    Progress(Facts),
+    Step(PyStep),
+}
+
+/// How often progress is told, in seconds.
+const TELL: f64 = 0.1;
+
+#[pymethods]
+impl PyOptimizer {
+    #[new]
+    #[pyo3(signature = (config, *, threads = None))]
+    fn new(py: Python<'_>, config: PyConfig, threads: Option<usize>) -> PyResult<Self> {
+        let plan = |caller: &Caller<'_, ()>| {
+            Optimizer::new_observed(config.0, |_| match caller.wants_an_end() {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            })
+        };
+        let (optimizer, exception) = watched(py, threads, plan, |_| Ok(()))?;
+        if let Some(exception) = exception {
+            return Err(exception);
+        }
+        Ok(Self { state: Mutex::new(State { optimizer: optimizer.python()?, report: None }), threads })
+    }
+
+    /// The configuration.
+    #[getter]
+    fn config(&self) -> PyResult<PyConfig> {
+        Ok(PyConfig(self.state()?.optimizer.config().clone()))
+    }
+
+    /// The coordinates as they are now, `[frame, y, x, sample, dim]`; a copy. To go on from others, assign
+    /// them.
+    #[getter]
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        table_to_numpy(py, self.state()?.optimizer.table())
+    }
+
+    #[setter]
+    fn set_points(&self, points: &Bound<'_, PyAny>) -> PyResult<()> {
+        let table = table_of(points)?;
+        self.state()?.optimizer.start_from(table).python()
+    }
+
+    /// Takes one step of slices with step size `rate`, then balances with `balance`. Returns the root mean
+    /// square distance between the samples and their targets before the step.
+    #[pyo3(signature = (rate = 1.0, balance = 1.0))]
+    fn step(&self, py: Python<'_>, rate: f64, balance: f64) -> PyResult<f64> {
+        let optimizer = &mut self.state()?.optimizer;
+        let step = detached(py, self.threads, || optimizer.step(rate, balance))?.python()?;
+        Ok(step.displacement)
+    }
+
+    /// Sweeps once over all samples. Returns the root mean square pull on a coordinate.
+    #[pyo3(signature = (rate = 1.0, balance = 1.0))]
+    fn sweep(&self, py: Python<'_>, rate: f64, balance: f64) -> PyResult<f64> {
+        let optimizer = &mut self.state()?.optimizer;
+        detached(py, self.threads, || optimizer.sweep(rate, balance))?.python()
+    }
+
+    /// Runs; `callback` is called after each step, and `progress` from time to time. Returns the report, and
+    /// the exception that ended it, if one did.
+    #[pyo3(signature = (until, callback, progress))]
+    fn _run(
+        &self,
+        py: Python<'_>,
+        until: Option<Until>,
+        callback: Option<Py<PyAny>>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<(PyReport, Option<PyErr>)> {
+        let state = &mut *self.state()?;
+        let optimizer = &mut state.optimizer;
+        let (calls_back, tells) = (callback.is_some(), progress.is_some());
+        let work = |caller: &Caller<'_, Told>| -> Result<RunReport, ConfigError> {
+            let mut told = 0.0;
+            let observe = |report: &StepReport<'_>| -> ControlFlow<()> {
+                let facts = Facts::from(report);
+                if tells && report.elapsed.as_secs_f64() - told >= TELL {
+                    told = report.elapsed.as_secs_f64();
+                    caller.tell(Told::Progress(facts));
+                }
+                if calls_back {
+                    let (step, asked) = PyStep::new(facts);
+                    caller.tell(Told::Step(step));
+                    answer(report, &asked)?;
+                }
+                if caller.wants_an_end() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            };
+            match until {
+                Some(until) => optimizer.run_observed(until.0, observe),
+                None => optimizer.finish_observed(observe),
+            }
+        };
+        let look = |event: Event<Told>| match event {
+            Event::Message(Told::Step(step)) => call_back(py, &callback, step),
+            Event::Message(Told::Progress(facts)) => tell(py, &progress, facts),
+            Event::Nothing => Ok(()),
+        };
+        let (report, exception) = watched(py, self.threads, work, look)?;
+        let report = report.python()?;
+        state.report = Some(report);
+        Ok((PyReport::new(&report), exception))
+    }
+
+    /// All that further steps depend on; a copy.
+    fn checkpoint(&self) -> PyResult<PyCheckpoint> {
+        Ok(PyCheckpoint(self.state()?.optimizer.checkpoint()))
+    }
+
+    /// Goes on from a checkpoint instead of what was reached: `finish` ends its run.
+    fn resume(&self, checkpoint: &PyCheckpoint) -> PyResult<()> {
+        self.state()?.optimizer.resume(checkpoint.0.clone()).python()
+    }
+
+    /// The array of the table and its metadata.
+    fn _table<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let state = self.state()?;
+        let metadata = state.metadata();
+        Ok((table_to_numpy(py, state.optimizer.table())?, json::to_python(py, &metadata)?))
+    }
+}
+
+impl State {
+    fn metadata(&self) -> Metadata {
+        match &self.report {
+            Some(report) => self.optimizer.metadata(report),
+            None => {
+                let Config { extent, dims, seed, .. } = *self.optimizer.config();
+                let configuration = serde_json::to_value(self.optimizer.config());
+                Metadata::new(extent, dims, seed, configuration.expect("a configuration is plain data"))
+            }
+        }
+    }
+}
+
+impl PyOptimizer {
+    fn state(&self) -> PyResult<MutexGuard<'_, State>> {
+        match self.state.try_lock() {
+            Ok(state) => Ok(state),
+            Err(TryLockError::Poisoned(state)) => Ok(state.into_inner()),
+            Err(TryLockError::WouldBlock) => Err(PyRuntimeError::new_err(
+                "the optimiser is running: wait for it, or ask the step that its callback sees",
+            )),
+        }
+    }
+}
+
+impl PyReport {
+    fn new(report: &RunReport) -> Self {
+        let RunReport { ended, steps, slices, work, elapsed, .. } = *report;
+        let ended = serde_json::to_value(ended).ok().and_then(|name| name.as_str().map(String::from));
+        Self {
+            ended: ended.unwrap_or_default(),
+            steps,
+            slices,
+            work: Until(fsot::Until::Work(work)),
+            elapsed: elapsed.as_secs_f64(),
+        }
+    }
+}
+
+fn call_back(py: Python<'_>, callback: &Option<Py<PyAny>>, step: PyStep) -> PyResult<()> {
+    let Some(callback) = callback else { return Ok(()) };
+    let step = Bound::new(py, step)?;
+    let answer = callback.call1(py, (&step,));
+    let ends = matches!(&answer, Ok(answer) if answer.bind(py).is(pyo3::types::PyBool::new(py, false)));
+    let flow = if ends || answer.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+    step.get().release(flow);
+    answer.map(drop)
+}
+
+fn tell(py: Python<'_>, progress: &Option<Py<PyAny>>, facts: Facts) -> PyResult<()> {
+    match progress {
+        Some(progress) => progress.call1(py, (Bound::new(py, PyStep::new(facts).0)?,)).map(drop),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,102 @@
+//! Work without the interpreter's lock, under the eyes of who may interrupt it.
+
+use std::panic::resume_unwind;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+use std::time::Duration;
+
+use pyo3::marker::Ungil;
+use pyo3::prelude::*;
+
+use crate::pool::pool;
+
+/// How soon Ctrl-C is noticed, and how often progress is told.
+const NOTICE: Duration = Duration::from_millis(50);
+
+/// Runs on a pool of so many threads, without the interpreter's lock. Nothing can interrupt it; Ctrl-C is
+/// heard afterwards.
+///
+/// # Errors
+/// A number of threads out of range.
+pub fn detached<T: Ungil + Send>(
+    py: Python<'_>,
+    threads: Option<usize>,
+    work: impl FnOnce() -> T + Ungil + Send,
+) -> PyResult<T> {
+    let pool = pool(threads)?;
+    Ok(py.detach(|| pool.install(work)))
+}
+
+/// What the worker asks of the thread that called.
+pub enum Event<Message> {
+    /// Something to look at, with the interpreter's lock.
+    Message(Message),
+    /// Nothing for a while.
+    Nothing,
+}
+
+/// The worker's side.
+pub struct Caller<'a, Message> {
+    messages: Sender<Message>,
+    stop: &'a AtomicBool,
+}
+
+impl<Message> Caller<'_, Message> {
+    /// Whether the caller wants an end, for Ctrl-C or an exception.
+    pub fn wants_an_end(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    /// Tells the caller; false if it doesn't listen any more.
+    pub fn tell(&self, message: Message) -> bool {
+        self.messages.send(message).is_ok()
+    }
+}
+
+/// Runs `work` on a pool, without the interpreter's lock, while this thread looks after signals and calls
+/// `look` with every message of the work, and from time to time with none. The first exception, of a signal
+/// handler or of `look`, asks the work to end, and is given back beside its result.
+///
+/// # Errors
+/// A number of threads out of range.
+pub fn watched<T: Send, Message: Send>(
+    py: Python<'_>,
+    threads: Option<usize>,
+    work: impl FnOnce(&Caller<'_, Message>) -> T + Send,
+    mut look: impl FnMut(Event<Message>) -> PyResult<()>,
+) -> PyResult<(T, Option<PyErr>)> {
+    let pool = pool(threads)?;
+    let stop = AtomicBool::new(false);
+    let (messages, heard) = channel();
+    let caller = Caller { messages, stop: &stop };
+    thread::scope(|scope| {
+        let worker = scope.spawn(move || pool.install(|| work(&caller)));
+        let mut exception = None;
+        let mut heard = Some(Mutex::new(heard));
+        while let Some(messages) = &heard {
+            let event = match next(py, messages) {
+                Ok(message) => Event::Message(message),
+                Err(RecvTimeoutError::Timeout) => Event::Nothing,
+                Err(RecvTimeoutError::Disconnected) => break,
+            };
+            if let Err(error) = py.check_signals().and_then(|()| look(event)) {
+                stop.store(true, Ordering::Relaxed);
+                exception = Some(error);
+                // Who waits for an answer hears that there is none.
+                heard = None;
+            }
+        }
+        let result = py.detach(|| worker.join()).unwrap_or_else(|panic| resume_unwind(panic));
+        Ok((result, exception))
+    })
+}
+
+/// The next message; the mutex is there for the compiler, which knows of one thread that waits.
+fn next<Message: Send>(
+    py: Python<'_>,
+    messages: &Mutex<Receiver<Message>>,
+) -> Result<Message, RecvTimeoutError> {
+    py.detach(|| messages.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(NOTICE))
+}
