@@ -14,7 +14,9 @@ use crate::errors::refused;
 const MOST: usize = 1024;
 
 /// Pools by number of threads, 0 standing for one thread a core, with the process that made them.
-static POOLS: Mutex<Option<(u32, HashMap<usize, Arc<ThreadPool>>)>> = Mutex::new(None);
+type Pools = (u32, HashMap<usize, Arc<ThreadPool>>);
+
+static POOLS: Mutex<Option<Pools>> = Mutex::new(None);
 
 /// The pool of so many threads; of one a core if nothing is said.
 ///
