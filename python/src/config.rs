@@ -178,9 +178,10 @@ fn domain_of(name: &Bound<'_, PyAny>) -> PyResult<Domain> {
 
 fn groups_of(groups: &Bound<'_, PyAny>) -> PyResult<Vec<DimensionGroup>> {
     let group = |one: Bound<'_, PyAny>| -> PyResult<DimensionGroup> {
-        match one.extract::<(Vec<usize>, f64)>() {
-            Ok((dims, weight)) => Ok(DimensionGroup::new(dims).with_weight(weight)),
-            Err(_) => Ok(DimensionGroup::new(one.extract::<Vec<usize>>()?)),
+        let numbers = |dims: Vec<Count>| dims.into_iter().map(|Count(dim)| dim).collect::<Vec<_>>();
+        match one.extract::<(Vec<Count>, f64)>() {
+            Ok((dims, weight)) => Ok(DimensionGroup::new(numbers(dims)).with_weight(weight)),
+            Err(_) => Ok(DimensionGroup::new(numbers(one.extract()?))),
         }
     };
     groups.try_iter()?.map(|one| group(one?)).collect()
