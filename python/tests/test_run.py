@@ -323,6 +323,22 @@ def test_points_are_copies_and_can_be_set():
     assert (optimizer.points == 0.25).all()
 
 
+def test_a_table_goes_on_with_the_random_numbers_after_its_own():
+    config = fsot.Config(16, 16)
+    first = fsot.Optimizer(config)
+    first.run(fsot.Until.slices(32), progress=False)
+    table = first.table()
+    first.run(fsot.Until.slices(32), progress=False)
+    second = fsot.Optimizer(config, start=table)
+    assert numpy.array_equal(second.points, table.array)
+    second.run(fsot.Until.slices(32), progress=False)
+    assert numpy.array_equal(second.points, first.points)
+    # Numbers alone don't say where their run ended.
+    third = fsot.Optimizer(config, start=table.array)
+    third.run(fsot.Until.slices(32), progress=False)
+    assert not numpy.array_equal(third.points, first.points)
+
+
 @pytest.mark.parametrize(
     ("points", "error", "sentence"),
     [
