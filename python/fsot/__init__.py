@@ -12,6 +12,7 @@ cancel under the filter that follows: the eye, a denoiser, temporal antialiasing
 You can stop here.
 """
 
+from . import metrics
 from ._fsot import Checkpoint, Config, Kernel, Report, Step, Until, __version__
 from ._make import table
 from ._optimizer import Interrupted, Optimizer
@@ -28,5 +29,6 @@ __all__ = [
     "Table",
     "Until",
     "__version__",
+    "metrics",
     "table",
 ]

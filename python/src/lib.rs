@@ -9,6 +9,7 @@ mod counts;
 mod errors;
 mod json;
 mod kernel;
+mod metrics;
 mod optimizer;
 mod pool;
 mod step;
@@ -26,6 +27,16 @@ mod _fsot {
     use crate::config::{PyConfig, configure};
     #[pymodule_export]
     use crate::kernel::PyKernel;
+    #[pymodule_export]
+    use crate::metrics::integrand::PyIntegrand;
+    #[pymodule_export]
+    use crate::metrics::integrands::PyIntegrands;
+    #[pymodule_export]
+    use crate::metrics::measure::{
+        measure_bias, measure_bound, measure_density_match, measure_discrepancy, measure_error_image,
+        measure_filtered_error, measure_histogram, measure_marginal, measure_set_error,
+        measure_sliced_distance, measure_spectra, spectra_of_image,
+    };
     #[pymodule_export]
     use crate::optimizer::{PyOptimizer, PyReport};
     #[pymodule_export]

@@ -5,7 +5,7 @@ use std::sync::{Mutex, MutexGuard, TryLockError};
 
 use fsot::files::Metadata;
 use fsot::optimizer::StepReport;
-use fsot::{Config, ConfigError, Optimizer, RunReport};
+use fsot::{Config, ConfigError, Optimizer, RunReport, SampleTable};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
@@ -57,6 +57,23 @@ pub struct PyOptimizer {
     threads: Option<usize>,
 }
 
+/// A table to go on from.
+struct Start {
+    table: SampleTable,
+    metadata: Option<Metadata>,
+}
+
+impl Start {
+    /// A `Table`, or an array without metadata.
+    fn of(start: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let metadata = match start.getattr_opt("metadata")? {
+            Some(metadata) if metadata.is_truthy()? => Some(json::of_python(&metadata)?),
+            _ => None,
+        };
+        Ok(Self { table: table_of(start)?, metadata })
+    }
+}
+
 enum Told {
     Progress(Facts),
     Step(PyStep),
@@ -68,10 +85,23 @@ const TELL: f64 = 0.1;
 #[pymethods]
 impl PyOptimizer {
     #[new]
-    #[pyo3(signature = (config, *, threads = None))]
-    fn new(py: Python<'_>, config: PyConfig, threads: Option<Count>) -> PyResult<Self> {
+    #[pyo3(signature = (config, *, start = None, threads = None))]
+    fn new(
+        py: Python<'_>,
+        config: PyConfig,
+        start: Option<&Bound<'_, PyAny>>,
+        threads: Option<Count>,
+    ) -> PyResult<Self> {
         let threads = threads.map(|Count(threads)| threads);
+        let start = start.map(Start::of).transpose()?;
         let plan = |caller: &Caller<'_, ()>| {
+            match start {
+                Some(Start { table, metadata: Some(metadata) }) => {
+                    return Optimizer::from_table_with(config.0, table, &metadata);
+                }
+                Some(Start { table, metadata: None }) => return Optimizer::from_table(config.0, table),
+                None => {}
+            }
             Optimizer::new_observed(config.0, |_| match caller.wants_an_end() {
                 true => ControlFlow::Break(()),
                 false => ControlFlow::Continue(()),
