@@ -15,13 +15,14 @@ import argparse
 import contextlib
 import signal
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Sequence
 from pathlib import Path
 
 from tqdm import tqdm
 
 from studies import engines, plot, results
 from studies.grid import Study, StudyError, Task, read
+from studies.task import Row
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -35,7 +36,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"study: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
-        print("study: ended early; the same command goes on", file=sys.stderr)
+        print("study: ended early; what is done is kept, and the same command goes on", file=sys.stderr)
         return 130
 
 
@@ -72,7 +73,9 @@ def _study(options: argparse.Namespace) -> int:
 def _run(study: Study, left: list[Task], kept: results.Results, options: argparse.Namespace) -> list[Task]:
     """Does what is left, and returns what has failed."""
     failed = []
-    bar = tqdm(total=len(study.tasks), initial=len(study.tasks) - len(left), unit=" tables", dynamic_ncols=True)
+    bar = tqdm(
+        total=len(study.tasks), initial=len(study.tasks) - len(left), unit=" tables", dynamic_ncols=True
+    )
     # A log wants fewer lines than a terminal.
     bar.mininterval = 0.1 if sys.stderr.isatty() else 10
     with bar:
@@ -94,7 +97,7 @@ def _run(study: Study, left: list[Task], kept: results.Results, options: argpars
 
 def _outcomes(
     study: Study, tasks: list[Task], options: argparse.Namespace, bar: tqdm[None]
-) -> Iterator[engines.Outcome]:
+) -> Generator[engines.Outcome, None, None]:
     if not tasks:
         return
     if options.serial:
@@ -111,7 +114,7 @@ def _outcomes(
         yield from engines.on_dask(client, tasks, say=lambda text: bar.write(text, file=sys.stderr))
 
 
-def _draw(study: Study, rows: dict[str, results.Row], out: Path) -> int:
+def _draw(study: Study, rows: dict[str, Row], out: Path) -> int:
     picture = out.with_suffix(".png")
     count = plot.draw(study.tasks, rows, picture)
     print(f"{picture}: {count} tables")
@@ -119,8 +122,12 @@ def _draw(study: Study, rows: dict[str, results.Row], out: Path) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("grid", type=Path, help="a TOML file: study.toml beside this script explains its keys")
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument(
+        "grid", type=Path, help="a TOML file: study.toml beside this script explains its keys"
+    )
     parser.add_argument("--out", type=Path, help="CSV file that rows are appended to [out/GRID.csv]")
     where = parser.add_mutually_exclusive_group()
     where.add_argument("--serial", action="store_true", help="in this process, without Dask")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import importlib.util
+import logging
+import signal
 import time
 import uuid
 import warnings
@@ -75,25 +77,41 @@ def _together(
         with_results=True,
         raise_errors=False,
     )
-    attended = time.monotonic()
-    looked = 0.0
+    watch = _Watch(client, say)
     while not done.is_empty():
         batch = done.next_batch(block=False)
         for future, result in batch:
             if future.cancelled():
                 raise StudyError("the scheduler is gone: start the study again, and it goes on")
             yield by_key.pop(future.key), result
-        if batch:
-            continue
-        time.sleep(LOOK)
+        watch.look()
+        if not batch:
+            time.sleep(LOOK)
+
+
+class _Watch:
+    """Tells of workers that have gone, and of none being there."""
+
+    def __init__(self, client: Any, say: Callable[[str], None]):
+        self.client, self.say = client, say
+        self.workers: set[str] = set()
+        self.looked = 0.0
+        self.attended = time.monotonic()
+
+    def look(self) -> None:
         now = time.monotonic()
-        if now - looked > 1:
-            looked = now
-            if client.ncores():
-                attended = now
-            elif now - attended > PATIENCE:
-                attended = now
-                say("there is no worker: waiting for one")
+        if now - self.looked < 1:
+            return
+        self.looked = now
+        workers = set(self.client.ncores())
+        for worker in sorted(self.workers - workers):
+            self.say(f"worker {worker} is gone: others do what it had begun")
+        self.workers = workers
+        if workers:
+            self.attended = now
+        elif now - self.attended > PATIENCE:
+            self.attended = now
+            self.say("there is no worker: waiting for one")
 
 
 def _is_killed(result: Any) -> bool:
@@ -120,8 +138,11 @@ def local(workers: int | None, tries: int) -> Iterator[Any]:
     from dask.system import CPU_COUNT
 
     with dask.config.set({"distributed.scheduler.allowed-failures": tries - 1}):
-        cluster = distributed.LocalCluster(n_workers=workers or CPU_COUNT, threads_per_worker=1)
+        cluster = distributed.LocalCluster(
+            n_workers=workers or CPU_COUNT, threads_per_worker=1, silence_logs=logging.ERROR
+        )
         with cluster, distributed.Client(cluster) as client:
+            client.register_plugin(_deaf_to_interrupts())
             yield client
 
 
@@ -170,10 +191,25 @@ def dashboard(client: Any) -> str:
     return f"dashboard: {client.dashboard_link}"
 
 
+def _deaf_to_interrupts() -> Any:
+    """Ctrl-C in a terminal reaches all processes; the study alone is to hear it, and ends its workers."""
+    from distributed import WorkerPlugin
+
+    class Deaf(WorkerPlugin):
+        name = "deaf-to-interrupts"
+
+        def setup(self, worker: Any) -> None:
+            signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+    return Deaf()
+
+
 def _dask() -> tuple[Any, Any]:
     try:
         import dask
         import distributed
     except ImportError as error:
-        raise StudyError('Dask is missing: pip install "distributed>=2024.1", or run with --serial') from error
+        raise StudyError(
+            'Dask is missing: pip install "distributed>=2024.1", or run with --serial'
+        ) from error
     return dask, distributed

@@ -82,7 +82,13 @@ def read(path: Path) -> Study:
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise StudyError(f"{path}: {error}") from error
     _known(data, SECTIONS, "the file")
-    for section, kind in (("grid", list), ("kernels", dict), ("measure", dict), ("local", dict), ("slurm", dict)):
+    for section, kind in (
+        ("grid", list),
+        ("kernels", dict),
+        ("measure", dict),
+        ("local", dict),
+        ("slurm", dict),
+    ):
         if not isinstance(data.get(section, kind()), kind):
             wanted = "[[grid]]" if kind is list else f"[{section}]"
             raise StudyError(f"{section} is no section: write {wanted}")
@@ -91,6 +97,9 @@ def read(path: Path) -> Study:
     kernels = _Kernels(data.get("kernels", {}), path.parent)
     measure = MEASURE | data.get("measure", {})
     _known(measure, MEASURE, "[measure]")
+    for key, least in (("integrands", 1), ("slices", 1), ("seed", 0)):
+        if type(measure[key]) is not int or measure[key] < least:
+            raise StudyError(f"{key} is {measure[key]!r}: give a whole number of at least {least}")
     # Grids may overlap.
     tasks = {task.key: task for grid in data["grid"] for task in _tasks(grid, kernels, measure)}
     return Study(list(tasks.values()), data.get("local", {}), data.get("slurm", {}))
@@ -114,9 +123,7 @@ def _tasks(grid: dict[str, Any], kernels: _Kernels, measure: dict[str, Any]) -> 
             yield _task(point, budget, kernels, measure)
 
 
-def _task(
-    point: dict[str, Any], budget: tuple[str, Any], kernels: _Kernels, measure: dict[str, Any]
-) -> Task:
+def _task(point: dict[str, Any], budget: tuple[str, Any], kernels: _Kernels, measure: dict[str, Any]) -> Task:
     kind, amount = budget
     name, kernel = kernels.find(point["kernel"])
     labels = point | {"kernel": name, "budget": kind if amount is None else f"{kind}:{amount}"}

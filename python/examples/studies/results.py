@@ -22,7 +22,9 @@ INTEGERS = ("width", "height", "frames", "spp", "dims", "seed", "pid")
 FLOATS = (
     "seconds",
     "error",
-    *(f"error {family}" for family in FAMILIES),
+    "error_se",
+    *(f"error.{family}" for family in FAMILIES),
+    "error_spatial",
     "bias",
     "bound",
     "task_seconds",

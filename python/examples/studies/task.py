@@ -8,7 +8,10 @@ import json
 import os
 import socket
 import time
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import fsot
 
 Row = dict[str, Any]
 
@@ -48,32 +51,51 @@ def _measured(work: dict[str, Any]) -> Row:
         raise RuntimeError(
             f"fsot is {fsot.__version__} here and {work['fsot']} where the study began: install the same"
         )
-    optimizer = fsot.Optimizer(fsot.Config.from_dict(work["config"]), threads=1)
+    config = fsot.Config.from_dict(work["config"])
+    optimizer = fsot.Optimizer(config, threads=1)
     report = optimizer.run(fsot.Until.from_dict(work["until"]), progress=False)
     if report.ended == "stopped":
         # Ctrl-C leaves the optimiser with half a table, which is nobody's answer.
         raise KeyboardInterrupt
-    array = optimizer.table().array
-    row: Row = {
+    table = optimizer.table()
+    return {
         "seconds": report.elapsed,
         "work": json.dumps(report.work.to_dict(), sort_keys=True),
-        "sha256": hashlib.sha256(array.astype("<f4").tobytes()).hexdigest(),
+        "sha256": hashlib.sha256(table.array.astype("<f4").tobytes()).hexdigest(),
+        **_figures(table, config, work["measure"]),
     }
-    return row | _figures(fsot, array, work)
 
 
-def _figures(fsot: Any, array: Any, work: dict[str, Any]) -> Row:
-    # PROVISIONAL until fsot.metrics is there
-    import numpy
+def _figures(table: fsot.Table, config: fsot.Config, measure: dict[str, Any]) -> Row:
+    """What the table is worth, all its dimensions together, as ratios to white noise."""
+    from fsot import Kernel, metrics
 
-    e = (array.mean(axis=3)[..., 0] - 0.5) * numpy.sqrt(12.0 * array.shape[3])
-    y, x = (numpy.minimum(numpy.arange(n), n - numpy.arange(n)) for n in e.shape[1:])
-    w = numpy.exp(-(y[:, None] ** 2 + x**2) / 2.1**2)
-    w /= w.sum()
-    f = numpy.fft.ifft2(numpy.fft.fft2(e) * numpy.fft.fft2(w)).real
-    error = float((f**2).mean() / (w**2).sum())
-    return {"error": error, "error half-space": error, "error smooth": error, "error ball": error,
-            "error box": error, "bias": error, "bound": error}
+    if measure["under"] == "own":
+        (kernel,) = config.kernels
+        objective = config
+    else:
+        kernel = Kernel.from_dict(measure["under"])
+        objective = None
+    integrands = metrics.Integrands.random(config.shape[-1], measure["integrands"], seed=measure["seed"])
+    error = metrics.filtered_error(table, integrands=integrands, kernel=kernel, threads=1)
+    bias = metrics.bias(table, integrands=integrands, threads=1)
+    bound = metrics.bound(
+        table,
+        objective,
+        kernel=kernel if objective is None else None,
+        slices=measure["slices"],
+        seed=measure["seed"],
+        threads=1,
+    )
+    of_families = {f"error.{family}": of.mean for family, of in error.spatio_temporal.families.items()}
+    return {
+        "error": error.spatio_temporal.mean,
+        "error_se": error.spatio_temporal.standard_error,
+        **of_families,
+        "error_spatial": error.spatial.mean,
+        "bias": bias.table.mean,
+        "bound": bound.ratio,
+    }
 
 
 def _worker() -> str:
