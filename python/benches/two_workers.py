@@ -42,14 +42,18 @@ def main() -> None:
         expected, serial = _run(toml, Path(folder, "serial.csv"), ["--serial"])
         print(f"in one process          {serial:6.1f} s")
         for name, kills in (("two workers", False), ("two workers, one killed", True)):
-            rows, seconds = _run(toml, Path(folder, f"{name}.csv"), ["--workers", "2"], tables // 2 if kills else 0)
+            rows, seconds = _run(
+                toml, Path(folder, f"{name}.csv"), ["--workers", "2"], tables // 2 if kills else 0
+            )
             assert rows.keys() == expected.keys() and len(rows) == tables, "rows are missing"
             other = [key for key in rows if any(rows[key][fact] != expected[key][fact] for fact in FACTS)]
             assert not other, f"{len(other)} rows differ"
             processes = len({row["pid"] for row in rows.values()})
             assert processes == 2 + kills, f"rows are of {processes} processes"
             share = sum(row["task_seconds"] for row in rows.values()) / seconds
-            print(f"{name:23} {seconds:6.1f} s, {serial / seconds:.2f} times as fast; {share:.2f} tables at a time")
+            print(
+                f"{name:23} {seconds:6.1f} s, {serial / seconds:.2f} times as fast; {share:.2f} tables at a time"
+            )
     print(f"all rows are the same, to the last bit; load after {os.getloadavg()[0]:.2f}")
 
 
@@ -69,7 +73,10 @@ def _run(toml: Path, out: Path, where: list[str], kill_after: int = 0) -> tuple[
     assert study.returncode == 0, said
     seconds = time.perf_counter() - began
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    print(f"  {after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime:.1f} s of processors", end="; ")
+    print(
+        f"  {after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime:.1f} s of processors",
+        end="; ",
+    )
     return results.load(out), seconds
 
 

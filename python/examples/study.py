@@ -5,8 +5,8 @@
     python study.py study.toml --scheduler tcp://…    # workers of a scheduler of Dask that runs already
     python study.py study.toml --slurm                # workers in jobs of SLURM
 
-The file says what is made. Rows go to a CSV file as they come. What is done is not done again: after Ctrl-C, a
-crash, or a change of the file, the same command goes on.
+The file says what is made. Rows go to a CSV file as they come. What is done is not done again: after Ctrl-C,
+a crash, or a change of the file, the same command goes on.
 """
 
 from __future__ import annotations

@@ -198,16 +198,16 @@ def test_what_is_done_is_not_done_again(toml):
 
 
 def test_failures_are_written_down_and_tried_again(toml, capsys):
-    toml.write_text(GRID.replace("width = 16", "width = [16, 0, -1, 2.5]"))
+    toml.write_text(GRID.replace("width = 16", f'width = [16, 0, -1, 2.5, {10**30}, "wide\\nand \\" open"]'))
     assert run(toml) == 1
     rows = list(results.load(toml.with_suffix(".csv")).values())
     failed = [row for row in rows if row["state"] == "failed"]
-    assert (len(rows), len(failed)) == (48, 36)
+    assert (len(rows), len(failed)) == (72, 60)
     assert {row["message"] for row in failed if row["width"] == 0} == {"width is 0: give at least 1"}
     assert all(row["message"] for row in failed)
-    assert "36 tables failed" in capsys.readouterr().err
+    assert "60 tables failed" in capsys.readouterr().err
     assert run(toml) == 1
-    assert lines(toml) == 1 + 48 + 36
+    assert lines(toml) == 1 + 72 + 60
 
 
 def test_a_worker_of_another_version_refuses(toml):

@@ -82,8 +82,10 @@ class Results:
             "config": json.dumps(task.work.get("config"), sort_keys=True),
             **row,
         }
-        self._write([row.get(column, "") for column in COLUMNS])
-        self.latest[task.key] = row
+        # Names and sentences must not break a line.
+        line = self._write(" ".join(str(row.get(column, "")).split()) for column in COLUMNS)
+        # What is known is what would be read.
+        self.latest[task.key] = _row(line)
 
     def is_done(self, task: Task) -> bool:
         """Whether a task has its row, and needs no other."""
@@ -106,13 +108,15 @@ class Results:
             self._file.close()
             raise
 
-    def _write(self, values: Iterable[Any]) -> None:
-        line = io.StringIO()
-        csv.writer(line, lineterminator="\n").writerow(values)
-        left = line.getvalue().encode("utf-8", errors="backslashreplace")
+    def _write(self, values: Iterable[str]) -> str:
+        text = io.StringIO()
+        csv.writer(text, lineterminator="").writerow(values)
+        line = text.getvalue().encode("utf-8", errors="backslashreplace")
+        left = line + b"\n"
         while left:
             left = left[self._file.write(left) :]
         os.fsync(self._file.fileno())
+        return line.decode()
 
 
 def load(path: Path) -> dict[str, Row]:
@@ -147,11 +151,23 @@ def _row(line: str) -> Row:
     row: Row = dict(zip(COLUMNS, values, strict=True))
     if row["state"] not in ("done", "failed") or len(row["key"]) != 64:
         raise ValueError("no row")
-    for column in INTEGERS:
-        row[column] = int(row[column]) if row[column] or row["state"] == "done" else None
-    for column in FLOATS:
-        row[column] = float(row[column]) if row[column] or row["state"] == "done" else None
+    for columns, kind in ((INTEGERS, int), (FLOATS, float)):
+        for column in columns:
+            row[column] = _number(kind, row[column], row["state"] == "failed")
     return row
+
+
+def _number(kind: type[int] | type[float], text: str, may_lack: bool) -> int | float | None:
+    """A number of a row; `None` in failed rows, which may have failed because it is none."""
+    try:
+        number = kind(text)
+        if kind is int and not 0 <= number < 1 << 64:
+            raise ValueError(f"{text} is out of range")
+    except ValueError:
+        if may_lack:
+            return None
+        raise
+    return number
 
 
 def save_parquet(rows: Iterable[Row], path: Path) -> bool:
@@ -166,7 +182,7 @@ def save_parquet(rows: Iterable[Row], path: Path) -> bool:
     for column in COLUMNS:
         values = [row.get(column) for row in rows]
         if column in INTEGERS:
-            columns[column] = pyarrow.array(values, pyarrow.uint64() if column == "seed" else pyarrow.int64())
+            columns[column] = pyarrow.array(values, pyarrow.uint64())
         elif column in FLOATS:
             columns[column] = pyarrow.array(values, pyarrow.float64())
         else:

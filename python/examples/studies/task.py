@@ -1,4 +1,4 @@
-"""One table: made and measured. This is what workers run; it imports nothing but `fsot` and what comes with Python."""
+"""One table: made and measured. This is what workers run: it imports `fsot`, and what comes with Python."""
 
 from __future__ import annotations
 
