@@ -65,15 +65,20 @@ def _together(
     import cloudpickle
     from distributed import as_completed
 
-    # Workers need not have this folder.
+    # Workers need not have this folder. Dask pickles by name what has one, so that the function that it gets
+    # has none.
     cloudpickle.register_pickle_by_value(task)
+
+    def carried(work: dict[str, Any]) -> Row:
+        return compute(work)
+
     # Keys of our own, lest two studies on one scheduler share tasks.
     run = uuid.uuid4().hex[:8]
     by_key = {f"table-{run}{each.key[:24]}": each for each in tasks}
     works = [each.work for each in tasks]
     # What is running when this ends early is of no use to anybody: futures are not kept beyond.
     done = as_completed(
-        client.map(compute, works, key=list(by_key), pure=False, batch_size=1000),
+        client.map(carried, works, key=list(by_key), pure=False, batch_size=1000),
         with_results=True,
         raise_errors=False,
     )
