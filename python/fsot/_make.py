@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+
+from numpy.typing import ArrayLike
 
 from . import _fsot
 from ._optimizer import Optimizer
@@ -17,10 +19,10 @@ def table(
     dims: int = 2,
     *,
     sigma: float | None = None,
-    temporal=None,
-    kernel=None,
-    groups=None,
-    domain=None,
+    temporal: str | ArrayLike | None = None,
+    kernel: _fsot.Kernel | None = None,
+    groups: Sequence[Sequence[int] | tuple[Sequence[int], float]] | None = None,
+    domain: str | list[str] | None = None,
     seed: int = 0,
     seconds: float | None = None,
     sweeps: int | None = None,

@@ -77,7 +77,12 @@ class Optimizer(_fsot.Optimizer):
         """The table as it is now, with the metadata of the last run."""
         return Table(*self._table())
 
-    def _follow(self, until, callback, progress):
+    def _follow(
+        self,
+        until: _fsot.Until | None,
+        callback: Callable[[_fsot.Step], bool | None] | None,
+        progress: bool,
+    ) -> _fsot.Report:
         with bar(progress) as show:
             report, error = self._run(until, callback, show)
         if isinstance(error, KeyboardInterrupt):
