@@ -82,13 +82,15 @@ class Optimizer(_fsot.Optimizer):
         until: _fsot.Until | None,
         callback: Callable[[_fsot.Step], bool | None] | None,
         progress: bool,
+        depth: int = 1,
     ) -> _fsot.Report:
+        """``depth``: frames of this package below the caller, whose line a warning names."""
         with bar(progress) as show:
             report, error = self._run(until, callback, show)
         if isinstance(error, KeyboardInterrupt):
             warnings.warn(
                 Interrupted(f"interrupted after {report.steps} steps; what they have reached is kept"),
-                stacklevel=3,
+                stacklevel=depth + 2,
             )
         elif error is not None:
             raise error

@@ -12,6 +12,7 @@ use pyo3::prelude::*;
 use crate::arrays::{table_of, table_to_numpy};
 use crate::checkpoint::PyCheckpoint;
 use crate::config::PyConfig;
+use crate::counts::Count;
 use crate::errors::OrPython;
 use crate::json;
 use crate::step::{Facts, PyStep, answer};
@@ -68,7 +69,8 @@ const TELL: f64 = 0.1;
 impl PyOptimizer {
     #[new]
     #[pyo3(signature = (config, *, threads = None))]
-    fn new(py: Python<'_>, config: PyConfig, threads: Option<usize>) -> PyResult<Self> {
+    fn new(py: Python<'_>, config: PyConfig, threads: Option<Count>) -> PyResult<Self> {
+        let threads = threads.map(|Count(threads)| threads);
         let plan = |caller: &Caller<'_, ()>| {
             Optimizer::new_observed(config.0, |_| match caller.wants_an_end() {
                 true => ControlFlow::Break(()),
@@ -222,7 +224,7 @@ fn call_back(py: Python<'_>, callback: &Option<Py<PyAny>>, step: PyStep) -> PyRe
     let Some(callback) = callback else { return Ok(()) };
     let step = Bound::new(py, step)?;
     let answer = callback.call1(py, (&step,));
-    let ends = matches!(&answer, Ok(answer) if answer.bind(py).is(pyo3::types::PyBool::new(py, false)));
+    let ends = matches!(&answer, Ok(answer) if matches!(answer.extract::<bool>(py), Ok(false)));
     let flow = if ends || answer.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
     step.get().release(flow);
     answer.map(drop)
