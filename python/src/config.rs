@@ -5,6 +5,7 @@ use fsot::{Config, Extent, Kernel};
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 
+use crate::counts::{Count, Number};
 use crate::errors::{OrPython, refused};
 use crate::json;
 use crate::kernel::{PyKernel, in_time};
@@ -19,9 +20,12 @@ pub struct PyConfig(pub Config);
 #[pymethods]
 impl PyConfig {
     #[new]
-    #[pyo3(signature = (width = 64, height = 64, frames = 1, spp = 1, dims = 2, *, seed = 0))]
-    fn new(width: usize, height: usize, frames: usize, spp: usize, dims: usize, seed: u64) -> Self {
-        Self(Config::new(Extent { frames, height, width, spp }, dims).with_seed(seed))
+    #[pyo3(signature = (
+        width = Count(64), height = Count(64), frames = Count(1), spp = Count(1), dims = Count(2), *,
+        seed = Number(0)
+    ), text_signature = "(width=64, height=64, frames=1, spp=1, dims=2, *, seed=0)")]
+    fn new(width: Count, height: Count, frames: Count, spp: Count, dims: Count, seed: Number) -> Self {
+        Self(Config::new(extent(width, height, frames, spp), dims.0).with_seed(seed.0))
     }
 
     /// Lengths of the axes `[frame, y, x, sample, dim]`.
@@ -44,8 +48,8 @@ impl PyConfig {
     }
 
     /// The same with another seed.
-    fn with_seed(&self, seed: u64) -> Self {
-        Self(self.0.clone().with_seed(seed))
+    fn with_seed(&self, seed: Number) -> Self {
+        Self(self.0.clone().with_seed(seed.0))
     }
 
     /// The same for another filter.
@@ -117,19 +121,19 @@ impl PyConfig {
 #[pyo3(signature = (width, height, frames, spp, dims, *, sigma, temporal, kernel, groups, domain, seed))]
 #[allow(clippy::too_many_arguments)] // they are the arguments of a function of Python
 pub fn configure(
-    width: usize,
-    height: usize,
-    frames: usize,
-    spp: usize,
-    dims: usize,
+    width: Count,
+    height: Count,
+    frames: Count,
+    spp: Count,
+    dims: Count,
     sigma: Option<f64>,
     temporal: Option<&Bound<'_, PyAny>>,
     kernel: Option<PyKernel>,
     groups: Option<&Bound<'_, PyAny>>,
     domain: Option<&Bound<'_, PyAny>>,
-    seed: u64,
+    seed: Number,
 ) -> PyResult<PyConfig> {
-    let mut config = Config::new(Extent { frames, height, width, spp }, dims).with_seed(seed);
+    let mut config = Config::new(extent(width, height, frames, spp), dims.0).with_seed(seed.0);
     if let Some(domain) = domain {
         config = with_domain(config, domain)?;
     }
@@ -153,6 +157,10 @@ pub fn configure(
     Ok(PyConfig(config))
 }
 
+fn extent(width: Count, height: Count, frames: Count, spp: Count) -> Extent {
+    Extent { frames: frames.0, height: height.0, width: width.0, spp: spp.0 }
+}
+
 fn with_domain(config: Config, domain: &Bound<'_, PyAny>) -> PyResult<Config> {
     match domain.cast::<PyList>() {
         Ok(list) => Ok(config.with_domains(list.iter().map(|one| domain_of(&one)).collect::<PyResult<_>>()?)),
@@ -170,9 +178,10 @@ fn domain_of(name: &Bound<'_, PyAny>) -> PyResult<Domain> {
 
 fn groups_of(groups: &Bound<'_, PyAny>) -> PyResult<Vec<DimensionGroup>> {
     let group = |one: Bound<'_, PyAny>| -> PyResult<DimensionGroup> {
-        match one.extract::<(Vec<usize>, f64)>() {
-            Ok((dims, weight)) => Ok(DimensionGroup::new(dims).with_weight(weight)),
-            Err(_) => Ok(DimensionGroup::new(one.extract::<Vec<usize>>()?)),
+        let numbers = |dims: Vec<Count>| dims.into_iter().map(|Count(dim)| dim).collect::<Vec<_>>();
+        match one.extract::<(Vec<Count>, f64)>() {
+            Ok((dims, weight)) => Ok(DimensionGroup::new(numbers(dims)).with_weight(weight)),
+            Err(_) => Ok(DimensionGroup::new(numbers(one.extract()?))),
         }
     };
     groups.try_iter()?.map(|one| group(one?)).collect()

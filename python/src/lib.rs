@@ -5,6 +5,7 @@ use pyo3::prelude::*;
 mod arrays;
 mod checkpoint;
 mod config;
+mod counts;
 mod errors;
 mod json;
 mod kernel;

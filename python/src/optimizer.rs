@@ -5,13 +5,14 @@ use std::sync::{Mutex, MutexGuard, TryLockError};
 
 use fsot::files::Metadata;
 use fsot::optimizer::StepReport;
-use fsot::{Config, ConfigError, Optimizer, RunReport};
+use fsot::{Config, ConfigError, Optimizer, RunReport, SampleTable};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
 use crate::arrays::{table_of, table_to_numpy};
 use crate::checkpoint::PyCheckpoint;
 use crate::config::PyConfig;
+use crate::counts::Count;
 use crate::errors::OrPython;
 use crate::json;
 use crate::step::{Facts, PyStep, answer};
@@ -56,6 +57,23 @@ pub struct PyOptimizer {
     threads: Option<usize>,
 }
 
+/// A table to go on from.
+struct Start {
+    table: SampleTable,
+    metadata: Option<Metadata>,
+}
+
+impl Start {
+    /// A `Table`, or an array without metadata.
+    fn of(start: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let metadata = match start.getattr_opt("metadata")? {
+            Some(metadata) if metadata.is_truthy()? => Some(json::of_python(&metadata)?),
+            _ => None,
+        };
+        Ok(Self { table: table_of(start)?, metadata })
+    }
+}
+
 enum Told {
     Progress(Facts),
     Step(PyStep),
@@ -67,9 +85,23 @@ const TELL: f64 = 0.1;
 #[pymethods]
 impl PyOptimizer {
     #[new]
-    #[pyo3(signature = (config, *, threads = None))]
-    fn new(py: Python<'_>, config: PyConfig, threads: Option<usize>) -> PyResult<Self> {
+    #[pyo3(signature = (config, *, start = None, threads = None))]
+    fn new(
+        py: Python<'_>,
+        config: PyConfig,
+        start: Option<&Bound<'_, PyAny>>,
+        threads: Option<Count>,
+    ) -> PyResult<Self> {
+        let threads = threads.map(|Count(threads)| threads);
+        let start = start.map(Start::of).transpose()?;
         let plan = |caller: &Caller<'_, ()>| {
+            match start {
+                Some(Start { table, metadata: Some(metadata) }) => {
+                    return Optimizer::from_table_with(config.0, table, &metadata);
+                }
+                Some(Start { table, metadata: None }) => return Optimizer::from_table(config.0, table),
+                None => {}
+            }
             Optimizer::new_observed(config.0, |_| match caller.wants_an_end() {
                 true => ControlFlow::Break(()),
                 false => ControlFlow::Continue(()),
@@ -222,7 +254,7 @@ fn call_back(py: Python<'_>, callback: &Option<Py<PyAny>>, step: PyStep) -> PyRe
     let Some(callback) = callback else { return Ok(()) };
     let step = Bound::new(py, step)?;
     let answer = callback.call1(py, (&step,));
-    let ends = matches!(&answer, Ok(answer) if answer.bind(py).is(pyo3::types::PyBool::new(py, false)));
+    let ends = matches!(&answer, Ok(answer) if matches!(answer.extract::<bool>(py), Ok(false)));
     let flow = if ends || answer.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
     step.get().release(flow);
     answer.map(drop)
