@@ -18,6 +18,9 @@ mod work;
 
 #[pymodule]
 mod _fsot {
+    use std::ffi::OsString;
+    use std::io::{self, Write};
+
     use pyo3::prelude::*;
 
     #[pymodule_export]
@@ -37,8 +40,13 @@ mod _fsot {
 
     /// Runs the command `fsot` with these arguments, and returns its exit code.
     #[pyfunction]
-    fn command(py: Python<'_>, arguments: Vec<String>) -> u8 {
-        py.detach(|| fsot_cli::command(arguments))
+    fn command(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
+        py.detach(|| {
+            let code = fsot_cli::command(arguments);
+            // Nobody else does: the process is Python's. Who reads it may have gone away.
+            let _ = io::stdout().flush();
+            code
+        })
     }
 
     #[pymodule_init]
