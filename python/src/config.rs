@@ -1,6 +1,7 @@
 //! All that determines a table but for the length of the run.
 
 use fsot::config::{DimensionGroup, Domain};
+use fsot::kernel::{TemporalKernel, check_fit};
 use fsot::{Config, Extent, Kernel};
 use pyo3::prelude::*;
 use pyo3::types::PyList;
@@ -8,7 +9,7 @@ use pyo3::types::PyList;
 use crate::counts::{Count, Number};
 use crate::errors::{OrPython, refused};
 use crate::json;
-use crate::kernel::{PyKernel, in_time};
+use crate::kernel::{PyKernel, Weights, in_time_of};
 
 /// All that determines a table but for the length of the run.
 ///
@@ -128,7 +129,7 @@ pub fn configure(
     dims: Count,
     sigma: Option<f64>,
     temporal: Option<&Bound<'_, PyAny>>,
-    kernel: Option<PyKernel>,
+    kernel: Option<&Bound<'_, PyAny>>,
     groups: Option<&Bound<'_, PyAny>>,
     domain: Option<&Bound<'_, PyAny>>,
     seed: Number,
@@ -141,15 +142,14 @@ pub fn configure(
         return Err(refused("sigma and kernel say the same thing twice: leave out one of them"));
     }
     let usual = config.kernels().swap_remove(0);
-    let mut own = match (kernel, sigma) {
-        // One over frames has what it needs.
-        (Some(kernel), _) => kernel.0,
-        (None, Some(sigma)) => Kernel::gaussian(sigma).with_temporal(usual.temporal),
-        (None, None) => usual,
+    let own = match (kernel, sigma) {
+        (Some(kernel), _) => given(kernel, temporal, usual, &config.extent)?,
+        (None, sigma) => {
+            let own =
+                sigma.map_or(usual.clone(), |sigma| Kernel::gaussian(sigma).with_temporal(usual.temporal));
+            temporal.map_or(Ok(own.clone()), |temporal| in_time_of(own, temporal))?
+        }
     };
-    if temporal.is_some() {
-        own = own.with_temporal(in_time(temporal)?);
-    }
     config = config.with_kernel(own);
     if let Some(groups) = groups {
         config = config.with_groups(&groups_of(groups)?);
@@ -161,7 +161,40 @@ fn extent(width: Count, height: Count, frames: Count, spp: Count) -> Extent {
     Extent { frames: frames.0, height: height.0, width: width.0, spp: spp.0 }
 }
 
-fn with_domain(config: Config, domain: &Bound<'_, PyAny>) -> PyResult<Config> {
+/// A `Kernel` as it is, or an array of weights: those in space alone are seen over time as is usual.
+fn given(
+    kernel: &Bound<'_, PyAny>,
+    temporal: Option<&Bound<'_, PyAny>>,
+    usual: Kernel,
+    extent: &Extent,
+) -> PyResult<Kernel> {
+    let (kernel, size) = match kernel.extract::<PyKernel>() {
+        Ok(PyKernel(kernel)) => {
+            if temporal.is_some() && kernel.temporal != TemporalKernel::None {
+                // Of weights for each frame there is more to say.
+                temporal.map(|temporal| in_time_of(kernel.clone(), temporal)).transpose()?;
+                return Err(refused(
+                    "kernel and temporal both say how frames are seen: leave out one of them, or give the \
+                     kernel by kernel.with_temporal(...)",
+                ));
+            }
+            let size = kernel.spatial.span();
+            (kernel, size)
+        }
+        Err(_) => {
+            let Weights { kernel, size } = Weights::of(kernel)?;
+            let kernel = match kernel.temporal {
+                TemporalKernel::None if temporal.is_none() => kernel.with_temporal(usual.temporal),
+                _ => kernel,
+            };
+            (kernel, Some(size))
+        }
+    };
+    size.map_or(Ok(()), |size| check_fit(size, extent)).python()?;
+    temporal.map_or(Ok(kernel.clone()), |temporal| in_time_of(kernel, temporal))
+}
+
+pub fn with_domain(config: Config, domain: &Bound<'_, PyAny>) -> PyResult<Config> {
     match domain.cast::<PyList>() {
         Ok(list) => Ok(config.with_domains(list.iter().map(|one| domain_of(&one)).collect::<PyResult<_>>()?)),
         Err(_) => Ok(config.with_domain(domain_of(domain)?)),
