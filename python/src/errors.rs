@@ -82,6 +82,9 @@ refusals!(
     ObjectiveError,
     TargetError,
     fsot::config::ExtentError,
+    fsot::config::GroupError,
+    fsot::config::RangeError,
+    fsot::config::TermError,
     fsot::kernel::KernelError,
     serde_json::Error
 );

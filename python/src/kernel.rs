@@ -53,9 +53,7 @@ impl PyKernel {
         frames: usize,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let taps = self.0.taps(&Extent { frames, height, width, spp: 1 }).python()?;
-        let row = |tap: &Tap| [f64::from(tap.dt), f64::from(tap.dy), f64::from(tap.dx), tap.weight];
-        let values = taps.iter().flat_map(row).collect();
-        Ok(to_numpy(py, Array2::from_shape_vec((taps.len(), 4), values).expect("four numbers a tap")))
+        Ok(rows(py, &taps))
     }
 
     /// Plain data, as in metadata.
@@ -85,4 +83,11 @@ pub fn in_time(temporal: Option<&Bound<'_, PyAny>>) -> PyResult<TemporalKernel> 
         Ok(text) => fsot_cli::temporal::parse(&text).map_err(refused),
         Err(_) => Ok(TemporalKernel::Taps(Numbers::<f64>::of(temporal)?.values)),
     }
+}
+
+/// Taps as rows of `[dt, dy, dx, weight]`.
+pub fn rows<'py>(py: Python<'py>, taps: &[Tap]) -> Bound<'py, PyArray2<f64>> {
+    let row = |tap: &Tap| [f64::from(tap.dt), f64::from(tap.dy), f64::from(tap.dx), tap.weight];
+    let values = taps.iter().flat_map(row).collect();
+    to_numpy(py, Array2::from_shape_vec((taps.len(), 4), values).expect("four numbers a tap"))
 }

@@ -4,14 +4,23 @@ use pyo3::prelude::*;
 
 mod arrays;
 mod checkpoint;
+mod classes;
 mod config;
+mod counts;
+mod demand;
 mod errors;
 mod json;
 mod kernel;
+mod objective;
 mod optimizer;
+mod own;
 mod pool;
+mod settings;
+mod slices;
 mod step;
 mod tables;
+mod target;
+mod term;
 mod until;
 mod work;
 
@@ -22,15 +31,27 @@ mod _fsot {
     #[pymodule_export]
     use crate::checkpoint::PyCheckpoint;
     #[pymodule_export]
+    use crate::classes::PyClasses;
+    #[pymodule_export]
     use crate::config::{PyConfig, configure};
+    #[pymodule_export]
+    use crate::demand::PyDemand;
     #[pymodule_export]
     use crate::kernel::PyKernel;
     #[pymodule_export]
+    use crate::objective::PyObjective;
+    #[pymodule_export]
     use crate::optimizer::{PyOptimizer, PyReport};
+    #[pymodule_export]
+    use crate::slices::PySlices;
     #[pymodule_export]
     use crate::step::PyStep;
     #[pymodule_export]
     use crate::tables::{check_table, load_table, save_table};
+    #[pymodule_export]
+    use crate::target::PyTarget;
+    #[pymodule_export]
+    use crate::term::PyTerm;
     #[pymodule_export]
     use crate::until::{Until, until};
 
@@ -42,6 +63,7 @@ mod _fsot {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("BELOW_ONE", f64::from(fsot::config::BELOW_ONE))?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

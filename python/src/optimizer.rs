@@ -12,8 +12,11 @@ use pyo3::prelude::*;
 use crate::arrays::{table_of, table_to_numpy};
 use crate::checkpoint::PyCheckpoint;
 use crate::config::PyConfig;
+use crate::counts::Count;
+use crate::demand::PyDemand;
 use crate::errors::OrPython;
 use crate::json;
+use crate::own::raised;
 use crate::step::{Facts, PyStep, answer};
 use crate::until::Until;
 use crate::work::{Caller, Event, detached, watched};
@@ -67,16 +70,28 @@ const TELL: f64 = 0.1;
 #[pymethods]
 impl PyOptimizer {
     #[new]
-    #[pyo3(signature = (config, *, threads = None))]
-    fn new(py: Python<'_>, config: PyConfig, threads: Option<usize>) -> PyResult<Self> {
+    #[pyo3(signature = (config, demand = None, *, threads = None))]
+    fn new(
+        py: Python<'_>,
+        config: PyConfig,
+        demand: Option<PyDemand>,
+        threads: Option<Count>,
+    ) -> PyResult<Self> {
+        let threads = threads.map(|Count(threads)| threads);
+        let demand = demand.map(|demand| demand.of(config.0.dims)).transpose()?;
         let plan = |caller: &Caller<'_, ()>| {
-            Optimizer::new_observed(config.0, |_| match caller.wants_an_end() {
+            let observe = |_| match caller.wants_an_end() {
                 true => ControlFlow::Break(()),
                 false => ControlFlow::Continue(()),
-            })
+            };
+            let config = config.0.clone();
+            match &demand {
+                Some(demand) => Optimizer::for_demand_observed(config, demand, observe),
+                None => Optimizer::new_observed(config, observe),
+            }
         };
         let (optimizer, exception) = watched(py, threads, plan, |_| Ok(()))?;
-        if let Some(exception) = exception {
+        if let Some(exception) = exception.or_else(|| raised(&config.0)) {
             return Err(exception);
         }
         Ok(Self { state: Mutex::new(State { optimizer: optimizer.python()?, report: None }), threads })
