@@ -36,5 +36,5 @@ def table(
     )
     until = _fsot.until(seconds, sweeps, slices)
     optimizer = Optimizer(config, threads=threads)
-    optimizer.run(until, callback, progress=progress)
+    optimizer._follow(until, callback, progress)
     return optimizer.table()

@@ -24,6 +24,9 @@ class Optimizer(_fsot.Optimizer):
     ----------
     config : Config
         What is optimised.
+    start : Table or array_like, optional
+        Numbers ``[frame, y, x, sample, dim]`` in ``[0, 1)`` to go on from, instead of the white noise of the
+        seed. A `Table` goes on with the random numbers after those of its run.
     threads : int, optional
         Threads to work on; one a core by default. The result doesn't depend on it.
 
@@ -77,13 +80,14 @@ class Optimizer(_fsot.Optimizer):
         """The table as it is now, with the metadata of the last run."""
         return Table(*self._table())
 
-    def _follow(self, until, callback, progress):
+    def _follow(self, until, callback, progress, depth=1):
+        """``depth``: frames of this package below the caller, whose line a warning names."""
         with bar(progress) as show:
             report, error = self._run(until, callback, show)
         if isinstance(error, KeyboardInterrupt):
             warnings.warn(
                 Interrupted(f"interrupted after {report.steps} steps; what they have reached is kept"),
-                stacklevel=3,
+                stacklevel=depth + 2,
             )
         elif error is not None:
             raise error

@@ -1,21 +1,23 @@
 //! The library's errors as Python's: its own sentences, in the kind that callers catch.
 
+use std::error::Error;
 use std::io;
 
-use fsot::ConfigError;
-use fsot::files::{ExportError, FormatError, TableError};
-use fsot::metrics::MeasureError;
-use fsot::objective::ObjectiveError;
 use fsot::optimizer::CheckpointError;
-use fsot::targets::{PictureError, TargetError};
 use pyo3::PyErr;
 use pyo3::exceptions::{PyOSError, PyValueError};
 
-/// What becomes an exception.
-pub trait IntoPython {
-    /// The exception: an `OSError`, which Python narrows to `FileNotFoundError` and the like by its number,
-    /// where the system refused something, and a `ValueError` otherwise.
-    fn into_python(self) -> PyErr;
+/// `result.python()?` in functions that Python calls.
+pub trait OrPython<T> {
+    /// The error as an exception: an `OSError`, which Python narrows to `FileNotFoundError` and the like by
+    /// its number, where the system refused something, and a `ValueError` otherwise.
+    fn python(self) -> Result<T, PyErr>;
+}
+
+impl<T, E: Error + 'static> OrPython<T> for Result<T, E> {
+    fn python(self) -> Result<T, PyErr> {
+        self.map_err(|error| exception(&error))
+    }
 }
 
 /// A refusal of the caller's values.
@@ -23,86 +25,21 @@ pub fn refused(sentence: impl ToString) -> PyErr {
     PyValueError::new_err(sentence.to_string())
 }
 
-/// A refusal of the system's.
-fn of_system(error: &io::Error, sentence: String) -> PyErr {
-    match error.raw_os_error() {
-        Some(number) => PyOSError::new_err((number, sentence)),
-        None => PyOSError::new_err(sentence),
+fn exception(error: &(dyn Error + 'static)) -> PyErr {
+    match refusal_of_system(error) {
+        Some(number) => PyOSError::new_err((number, error.to_string())),
+        None => refused(error),
     }
 }
 
-impl IntoPython for TableError {
-    fn into_python(self) -> PyErr {
-        match &self {
-            Self::Io { source, .. } => of_system(source, self.to_string()),
-            _ => refused(self),
-        }
+/// The number of the system's refusal, if this is one.
+fn refusal_of_system(error: &(dyn Error + 'static)) -> Option<i32> {
+    // A checkpoint's error shows what it wraps, and so doesn't name it as its source.
+    if let Some(CheckpointError::File { problem, .. }) = error.downcast_ref() {
+        return refusal_of_system(&**problem);
     }
-}
-
-impl IntoPython for ExportError {
-    fn into_python(self) -> PyErr {
-        match &self {
-            Self::Io { source, .. } => of_system(source, self.to_string()),
-            _ => refused(self),
-        }
-    }
-}
-
-impl IntoPython for CheckpointError {
-    fn into_python(self) -> PyErr {
-        match &self {
-            Self::Io(source) => of_system(source, self.to_string()),
-            _ => refused(self),
-        }
-    }
-}
-
-impl IntoPython for PictureError {
-    fn into_python(self) -> PyErr {
-        refused(self)
-    }
-}
-
-/// Errors that are about values alone.
-macro_rules! refusals {
-    ($($error:ty),*) => {
-        $(impl IntoPython for $error {
-            fn into_python(self) -> PyErr {
-                refused(self)
-            }
-        })*
-    };
-}
-
-refusals!(
-    ConfigError,
-    FormatError,
-    MeasureError,
-    ObjectiveError,
-    TargetError,
-    fsot::config::ExtentError,
-    fsot::config::GroupError,
-    fsot::config::RangeError,
-    fsot::config::TermError,
-    fsot::kernel::KernelError,
-    serde_json::Error
-);
-
-impl IntoPython for fsot_cli::Failure {
-    fn into_python(self) -> PyErr {
-        refused(self)
-    }
-}
-
-/// `result.python()?` in functions that Python calls.
-pub trait OrPython<T> {
-    /// The error as an exception.
-    fn python(self) -> Result<T, PyErr>;
-}
-
-impl<T, E: IntoPython> OrPython<T> for Result<T, E> {
-    fn python(self) -> Result<T, PyErr> {
-        self.map_err(E::into_python)
+    match error.downcast_ref::<io::Error>() {
+        Some(error) => error.raw_os_error(),
+        None => error.source().and_then(refusal_of_system),
     }
 }

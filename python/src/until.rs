@@ -3,6 +3,7 @@
 use fsot::config::Work;
 use pyo3::prelude::*;
 
+use crate::counts::Number;
 use crate::errors::refused;
 use crate::json;
 
@@ -35,20 +36,21 @@ impl Until {
 
     /// This many sweeps; 20 to 100 make a good table.
     #[staticmethod]
-    fn sweeps(sweeps: u64) -> Self {
-        Self(fsot::Until::Sweeps(sweeps))
+    fn sweeps(sweeps: Number) -> Self {
+        Self(fsot::Until::Sweeps(sweeps.0))
     }
 
     /// This many slices per pixel and frame, or per class of a point set.
     #[staticmethod]
-    fn slices(slices: u64) -> Self {
-        Self(fsot::Until::SlicesPerClass(slices))
+    fn slices(slices: Number) -> Self {
+        Self(fsot::Until::SlicesPerClass(slices.0))
     }
 
     /// Sweeps of the frame that an animation begins with, then slices, then sweeps.
     #[staticmethod]
-    #[pyo3(signature = (*, frame_sweeps = 0, slices = 0, sweeps = 0))]
-    fn work(frame_sweeps: u64, slices: u64, sweeps: u64) -> Self {
+    #[pyo3(signature = (*, frame_sweeps = Number(0), slices = Number(0), sweeps = Number(0)))]
+    fn work(frame_sweeps: Number, slices: Number, sweeps: Number) -> Self {
+        let [frame_sweeps, slices, sweeps] = [frame_sweeps, slices, sweeps].map(|Number(number)| number);
         Self(fsot::Until::Work(Work { frame_sweeps, slices_per_class: slices, sweeps }))
     }
 
@@ -56,8 +58,9 @@ impl Until {
     /// share `improvement`, in `[0, 1)`, from one window of `window_steps` steps to the next, and after
     /// `at_most` slices per pixel and frame at the latest.
     #[staticmethod]
-    #[pyo3(signature = (improvement = 0.01, *, window_steps = 64, at_most = 10_000))]
-    fn converged(improvement: f64, window_steps: u64, at_most: u64) -> Self {
+    #[pyo3(signature = (improvement = 0.01, *, window_steps = Number(64), at_most = Number(10_000)))]
+    fn converged(improvement: f64, window_steps: Number, at_most: Number) -> Self {
+        let [window_steps, at_most] = [window_steps, at_most].map(|Number(number)| number);
         Self(fsot::Until::Converged { improvement, window_steps, at_most })
     }
 
@@ -96,7 +99,8 @@ impl Until {
 
 /// What `seconds`, `sweeps` and `slices` of a function say together.
 #[pyfunction]
-pub fn until(seconds: Option<f64>, sweeps: Option<u64>, slices: Option<u64>) -> PyResult<Until> {
+pub fn until(seconds: Option<f64>, sweeps: Option<Number>, slices: Option<Number>) -> PyResult<Until> {
+    let [sweeps, slices] = [sweeps, slices].map(|number| number.map(|Number(number)| number));
     let until = match (seconds, sweeps, slices) {
         (None, None, None) => fsot::Until::Usual,
         (Some(seconds), None, None) => fsot::Until::Seconds(seconds),
