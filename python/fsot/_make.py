@@ -21,6 +21,7 @@ def table(
     kernel=None,
     groups=None,
     domain=None,
+    demand: _fsot.Demand | None = None,
     seed: int = 0,
     seconds: float | None = None,
     sweeps: int | None = None,
@@ -35,6 +36,6 @@ def table(
         sigma=sigma, temporal=temporal, kernel=kernel, groups=groups, domain=domain, seed=seed,
     )
     until = _fsot.until(seconds, sweeps, slices)
-    optimizer = Optimizer(config, threads=threads)
+    optimizer = Optimizer(config, demand=demand, threads=threads)
     optimizer._follow(until, callback, progress)
     return optimizer.table()
