@@ -12,6 +12,7 @@ mod errors;
 mod json;
 mod kernel;
 mod make;
+mod metrics;
 mod objective;
 mod optimizer;
 mod own;
@@ -44,6 +45,16 @@ mod _fsot {
     use crate::kernel::PyKernel;
     #[pymodule_export]
     use crate::make::configure;
+    #[pymodule_export]
+    use crate::metrics::integrand::PyIntegrand;
+    #[pymodule_export]
+    use crate::metrics::integrands::PyIntegrands;
+    #[pymodule_export]
+    use crate::metrics::measure::{
+        measure_bias, measure_bound, measure_density_match, measure_discrepancy, measure_error_image,
+        measure_filtered_error, measure_histogram, measure_marginal, measure_set_error,
+        measure_sliced_distance, measure_spectra, spectra_of_image,
+    };
     #[pymodule_export]
     use crate::objective::PyObjective;
     #[pymodule_export]
