@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -17,6 +18,8 @@ import fsot
 
 pytest.importorskip("distributed")
 pytest.importorskip("filelock")
+# Two clusters at once have dashboards at two ports.
+pytestmark = pytest.mark.filterwarnings("ignore:Port 8787")
 EXAMPLES = Path(__file__).parents[1] / "examples"
 sys.path.insert(0, str(EXAMPLES))
 
@@ -144,7 +147,7 @@ def test_slips_are_told_before_anything_is_made(toml, capsys, text, sentence):
     toml.write_text(text)
     assert run(toml) == 1
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith("study: ") and __import__("re").search(sentence, line)
+    assert line.startswith("study: ") and re.search(sentence, line)
     assert not toml.with_suffix(".csv").exists()
 
 
@@ -416,7 +419,9 @@ def test_jobs_of_slurm_make_the_same_rows(toml, tmp_path, monkeypatch):
     commands = tmp_path / "bin"
     commands.mkdir()
     # The script is gone as soon as it is submitted.
-    sbatch = 'cp "$1" "$1.kept"; setsid sh "$1.kept" > /dev/null 2>&1 < /dev/null & echo "Submitted batch job $!"'
+    sbatch = (
+        'cp "$1" "$1.kept"; setsid sh "$1.kept" > /dev/null 2>&1 < /dev/null & echo "Submitted batch job $!"'
+    )
     for name, script in {"sbatch": sbatch, "scancel": 'kill -- "-$1"'}.items():
         (commands / name).write_text(f"#!/bin/sh\n{script}\n")
         (commands / name).chmod(0o755)
