@@ -35,6 +35,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except StudyError as error:
         print(f"study: {error}", file=sys.stderr)
         return 1
+    except OSError as error:
+        print(f"study: {error}: rows that were written are kept; mend that and start again", file=sys.stderr)
+        return 1
     except KeyboardInterrupt:
         print("study: ended early; what is done is kept, and the same command goes on", file=sys.stderr)
         return 130

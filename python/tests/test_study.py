@@ -80,6 +80,8 @@ def test_frames_and_taps_are_filtered_as_usual(toml):
         ("[[grid]]\nkernel = { sigma = 1, box = 3 }", "2 shapes: give one of"),
         ('[[grid]]\nkernel = { taps = "nowhere.npy" }', "No such file"),
         ("[[grid]]\n[measure]\nintegrands = 0", "integrands is 0"),
+        ("[[grid]]\n[local]\nworkers = 0", "workers is 0: give a whole number"),
+        ("[[grid]]\n[slurm]\njobs = 1.5", "jobs is 1.5: give a whole number"),
         ("[[grid]]\n[measur]", "did you mean 'measure'"),
     ],
 )
@@ -211,6 +213,26 @@ def test_files_of_others_are_left_alone(toml, capsys):
         assert run(toml) == 1
         assert "other columns" in capsys.readouterr().err
         assert out.read_text() == text
+
+
+def test_a_full_disk_costs_half_a_line(toml, capsys):
+    assert run(toml) == 0
+    out = toml.with_suffix(".csv")
+    expected = facts(out)
+    room = len(out.read_bytes()) // 2
+    out.unlink()
+    script = f"import resource, sys; sys.path.insert(0, {str(EXAMPLES)!r}); import study\n"
+    script += f"resource.setrlimit(resource.RLIMIT_FSIZE, ({room}, {room})); sys.exit(study.main())"
+    arguments = [str(toml), "--out", str(out), "--serial", "--no-plot"]
+    done = subprocess.run(
+        [sys.executable, "-c", script, *arguments], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 1
+    assert "rows that were written are kept" in done.stderr and "Traceback" not in done.stderr
+    assert len(out.read_bytes()) == room
+    assert run(toml) == 0
+    assert "was cut" in capsys.readouterr().err
+    assert facts(out) == expected
 
 
 def test_two_studies_of_one_file_refuse_each_other(toml):
