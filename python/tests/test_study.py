@@ -12,7 +12,7 @@ import time
 
 import numpy
 import pytest
-from study_tools import EXAMPLES, GRID, facts, lines, run, signals, toml  # noqa: F401
+from study_tools import EXAMPLES, GRID, facts, lines, run, signals, study, toml  # noqa: F401
 
 import fsot
 from studies import engines, grid, plot, results, task
@@ -308,3 +308,13 @@ def test_curves_are_medians_over_seeds(toml):
     assert plot.points(curves["box"]) == [(2.0, pytest.approx(0.3), 0.1, pytest.approx(0.9))] * 2
     with pytest.raises(grid.StudyError, match="run the study first"):
         plot.draw(tasks, {}, picture)
+
+
+def test_a_study_needs_no_picture(toml, capsys, monkeypatch):
+    arguments = [str(toml), "--out", str(toml.with_suffix(".csv"))]
+    assert study.main([*arguments, "--plot-only"]) == 1
+    assert "run the study first" in capsys.readouterr().err
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    assert study.main([*arguments, "--serial"]) == 0
+    assert "no picture: pictures need matplotlib" in capsys.readouterr().err
+    assert study.main([*arguments, "--plot-only"]) == 1
