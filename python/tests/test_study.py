@@ -273,7 +273,7 @@ def test_a_study_that_is_ended_goes_on(toml, number):
         "--no-plot",
     ]
     process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
-    while not out.exists() or lines(toml) < 20:
+    while process.poll() is None and (not out.exists() or lines(toml) < 20):
         time.sleep(0.01)
     process.send_signal(number)
     assert "the same command goes on" in process.communicate()[1]
