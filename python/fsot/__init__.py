@@ -12,6 +12,7 @@ cancel under the filter that follows: the eye, a denoiser, temporal antialiasing
 You can stop here.
 """
 
+from . import metrics
 from ._fsot import (
     BELOW_ONE,
     Checkpoint,
@@ -50,5 +51,6 @@ __all__ = [
     "Term",
     "Until",
     "__version__",
+    "metrics",
     "table",
 ]

@@ -82,7 +82,13 @@ class Optimizer(_fsot.Optimizer):
         """The table as it is now, with the metadata of the last run."""
         return Table(*self._table())
 
-    def _follow(self, until, callback, progress, depth=1):
+    def _follow(
+        self,
+        until: _fsot.Until | None,
+        callback: Callable[[_fsot.Step], bool | None] | None,
+        progress: bool,
+        depth: int = 1,
+    ) -> _fsot.Report:
         """``depth``: frames of this package below the caller, whose line a warning names."""
         with bar(progress) as show:
             report, error = self._run(until, callback, show)

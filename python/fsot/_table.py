@@ -6,7 +6,7 @@ import os
 from typing import Any
 
 import numpy
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from . import _fsot
 
@@ -53,8 +53,8 @@ class Table:
         """Reads a table that was saved, with the metadata beside it if there are any."""
         return cls(*_fsot.load_table(path))
 
-    def __array__(self, dtype=None, copy=None):
-        return numpy.array(self._array, dtype=dtype, copy=bool(copy))
+    def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
+        return numpy.array(self._array, dtype=dtype, copy=copy)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Table) and numpy.array_equal(self._array, other._array)

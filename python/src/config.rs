@@ -10,7 +10,7 @@ use crate::classes::{PyClasses, form_of};
 use crate::counts::{Count, Number};
 use crate::errors::{OrPython, refused};
 use crate::json;
-use crate::kernel::{PyKernel, in_time};
+use crate::kernel::PyKernel;
 use crate::settings::{change, check_terms, domain_name, groups_of, is_plain, schedule_of, with_domain};
 use crate::target::PyTarget;
 use crate::term::{PyTerm, role_of};
@@ -382,50 +382,7 @@ impl PyConfig {
     }
 }
 
-/// What `fsot.table` says of a table.
-#[pyfunction]
-#[pyo3(signature = (width, height, frames, spp, dims, *, sigma, temporal, kernel, groups, domain, seed))]
-#[allow(clippy::too_many_arguments)] // they are the arguments of a function of Python
-pub fn configure(
-    width: Count,
-    height: Count,
-    frames: Count,
-    spp: Count,
-    dims: Count,
-    sigma: Option<f64>,
-    temporal: Option<&Bound<'_, PyAny>>,
-    kernel: Option<PyKernel>,
-    groups: Option<&Bound<'_, PyAny>>,
-    domain: Option<&Bound<'_, PyAny>>,
-    seed: Number,
-) -> PyResult<PyConfig> {
-    let mut config = Config::new(extent(width, height, frames, spp), dims.0).with_seed(seed.0);
-    if let Some(domain) = domain {
-        config = with_domain(config, domain)?;
-    }
-    if sigma.is_some() && kernel.is_some() {
-        return Err(refused("sigma and kernel say the same thing twice: leave out one of them"));
-    }
-    let usual = config.kernels().swap_remove(0);
-    let mut own = match (kernel, sigma) {
-        // One over frames has what it needs.
-        (Some(kernel), _) => kernel.0,
-        (None, Some(sigma)) => Kernel::gaussian(sigma).with_temporal(usual.temporal),
-        (None, None) => usual,
-    };
-    if temporal.is_some() {
-        own = own.with_temporal(in_time(temporal)?);
-    }
-    config = config.with_kernel(own);
-    if let Some(groups) = groups {
-        config = {
-            let groups = groups_of(groups, config.dims)?;
-            config.with_groups(&groups)
-        };
-    }
-    Ok(PyConfig(config))
-}
-
-fn extent(width: Count, height: Count, frames: Count, spp: Count) -> Extent {
+/// Of whole numbers of Python's.
+pub fn extent(width: Count, height: Count, frames: Count, spp: Count) -> Extent {
     Extent { frames: frames.0, height: height.0, width: width.0, spp: spp.0 }
 }

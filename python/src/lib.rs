@@ -11,6 +11,8 @@ mod demand;
 mod errors;
 mod json;
 mod kernel;
+mod make;
+mod metrics;
 mod objective;
 mod optimizer;
 mod own;
@@ -26,6 +28,9 @@ mod work;
 
 #[pymodule]
 mod _fsot {
+    use std::ffi::OsString;
+    use std::io::{self, Write};
+
     use pyo3::prelude::*;
 
     #[pymodule_export]
@@ -33,11 +38,23 @@ mod _fsot {
     #[pymodule_export]
     use crate::classes::PyClasses;
     #[pymodule_export]
-    use crate::config::{PyConfig, configure};
+    use crate::config::PyConfig;
     #[pymodule_export]
     use crate::demand::PyDemand;
     #[pymodule_export]
     use crate::kernel::PyKernel;
+    #[pymodule_export]
+    use crate::make::configure;
+    #[pymodule_export]
+    use crate::metrics::integrand::PyIntegrand;
+    #[pymodule_export]
+    use crate::metrics::integrands::PyIntegrands;
+    #[pymodule_export]
+    use crate::metrics::measure::{
+        measure_bias, measure_bound, measure_density_match, measure_discrepancy, measure_error_image,
+        measure_filtered_error, measure_histogram, measure_marginal, measure_set_error,
+        measure_sliced_distance, measure_spectra, spectra_of_image,
+    };
     #[pymodule_export]
     use crate::objective::PyObjective;
     #[pymodule_export]
@@ -57,8 +74,13 @@ mod _fsot {
 
     /// Runs the command `fsot` with these arguments, and returns its exit code.
     #[pyfunction]
-    fn command(py: Python<'_>, arguments: Vec<String>) -> u8 {
-        py.detach(|| fsot_cli::command(arguments))
+    fn command(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
+        py.detach(|| {
+            let code = fsot_cli::command(arguments);
+            // Nobody else does: the process is Python's. Who reads it may have gone away.
+            let _ = io::stdout().flush();
+            code
+        })
     }
 
     #[pymodule_init]

@@ -103,9 +103,15 @@ def test_an_optimizer_that_runs_says_so():
 
 
 def test_a_run_may_start_another():
+    # Also where one thread is all that there is, which the outer run holds.
     inside = []
-    outside = small(callback=lambda step: inside.append(small()) if step.step == 3 else None)
-    assert inside == [small()] and outside == small()
+
+    def nest(step, depth=3):
+        if step.step == 3 and depth:
+            inside.append(small(threads=1, callback=lambda step: nest(step, depth - 1)))
+
+    assert small(threads=1, callback=nest) == small()
+    assert inside == 3 * [small()]
 
 
 @pytest.mark.parametrize("threads", [1, 2, 3])
