@@ -237,16 +237,23 @@ class TestTargets:
         with pytest.raises(LookupError, match="there"):
             objective.value_and_gradient(numpy.full((8, 2), 0.5), slices)
 
-    def test_a_function_may_use_fsot_itself(self):
-        """It is called by a thread of the pool that plans, and asks the same pool."""
-        inner = fsot.Objective(fsot.Config(4, 4), threads=2)
+    @pytest.mark.parametrize("threads", [1, 2])
+    def test_a_function_may_use_fsot_itself(self, threads):
+        """It is called by a thread of the pool that plans, which waits for it."""
+        inner = fsot.Objective(fsot.Config(4, 4), threads=threads)
+        asked = []
 
         def quantiles(theta):
-            inner.cramer(numpy.full(inner.shape, 0.5))
+            asked.append(inner.cramer(numpy.full(inner.shape, 0.5))[0])
+            if len(asked) < 3:
+                inner.draw()
+                fsot.table(4, 4, sweeps=1, threads=threads, progress=False, callback=lambda step: None)
+                fsot.Objective(fsot.Config(4, 4), threads=threads)
             return beta_quantiles(theta)
 
         config = fsot.Config.points(8, 2, [one(WHOLE, fsot.Target.quantiles(quantiles, dims=2))])
-        assert fsot.Objective(config, threads=2).shape == (1, 1, 8, 1, 2)
+        assert fsot.Objective(config, threads=threads).shape == (1, 1, 8, 1, 2)
+        assert len(set(asked)) == 1
 
     def test_several_threads_plan_with_one_function(self):
         target = fsot.Target.quantiles(beta_quantiles, dims=2)
