@@ -1,7 +1,8 @@
 """A small network learns to turn white noise into a table whose error is blue noise.
 
-It is a convolution over pixels that wraps, trained through the filtered sliced loss on new white noise in every
-step, so that it cannot remember a table: it is judged on noise that it has not seen, and on a larger table.
+It is a convolution over pixels that wraps, trained through the filtered sliced loss on new white noise in
+each step, so that it cannot remember a table: it is judged on noise that it has not seen, and on a larger
+table.
 
     python train_network.py --seconds 100 --out network.npy
 """
@@ -73,9 +74,9 @@ def judge(network: Network, size: int, seed: int, seconds: float) -> dict[str, f
     noise = torch.rand(1, 2, size, size, generator=torch.Generator().manual_seed(2**40 + seed))
     with torch.no_grad():
         made = network(noise)
-    made_in_time = fsot.table(size, size, seed=seed, seconds=seconds, progress=False)
-    arrays = (points_of(tables).numpy()[:, :, :, None, :] for tables in (noise, made))
-    return dict(zip(("white noise", "network"), map(fsot.Table, arrays), strict=True)) | {"fsot": made_in_time}
+    white_noise, of_network = (fsot.Table(points_of(one).numpy()[:, :, :, None, :]) for one in (noise, made))
+    of_fsot = fsot.table(size, size, seed=seed, seconds=seconds, progress=False)
+    return {"white noise": white_noise, "network": of_network, "fsot": of_fsot}
 
 
 def main() -> None:
@@ -99,7 +100,8 @@ def main() -> None:
         for name, table in tables.items():
             error = fsot.metrics.filtered_error(table, integrands=integrands)
             bias = fsot.metrics.bias(table, integrands=integrands).table.mean
-            print(f"{size} x {size}, {name:14} {error.spatial.mean:14.3f} {error.unfiltered.mean:10.3f} {bias:6.3f}")
+            figures = f"{error.spatial.mean:14.3f} {error.unfiltered.mean:10.3f} {bias:6.3f}"
+            print(f"{size} x {size}, {name:14} {figures}")
         if arguments.out and size == arguments.size:
             tables["network"].save(arguments.out)
 

@@ -251,6 +251,7 @@ impl PyObjective {
     }
 }
 
+type Observe<'a> = &'a dyn Fn(f64) -> ControlFlow<()>;
 type Found<'py> = (f64, Bound<'py, PyArrayDyn<f64>>);
 type Parts = (PyConfig, Option<PyDemand>, Option<usize>);
 
@@ -259,7 +260,7 @@ impl PyObjective {
         &self,
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
-        of: impl Fn(&[f64], &dyn Fn(f64) -> ControlFlow<()>) -> Result<ValueAndGradient, ObjectiveError> + Sync,
+        of: impl Fn(&[f64], Observe<'_>) -> Result<ValueAndGradient, ObjectiveError> + Sync,
     ) -> PyResult<Found<'py>> {
         let Numbers { shape, values } = Numbers::<f64>::of(points)?;
         self.check_shape(&shape)?;

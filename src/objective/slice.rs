@@ -89,6 +89,27 @@ impl Objective {
     ///
     /// # Errors
     /// As [`Objective::value_and_gradient`]; [`ObjectiveError::Stopped`] if `observe` breaks off.
+    ///
+    /// ```
+    /// use std::ops::ControlFlow;
+    ///
+    /// use fsot::config::Role;
+    /// use fsot::objective::ObjectiveError;
+    /// use fsot::{Config, Extent, Objective};
+    ///
+    /// let objective = Objective::new(&Config::new(Extent::still(8, 8), 2))?;
+    /// let (points, mut shares) = (vec![0.5; 128], Vec::new());
+    /// let slices = objective.draw(7, 0, Role::Descend);
+    /// let found = objective.value_and_gradient_observed(&points, &slices, |share| {
+    ///     shares.push(share);
+    ///     ControlFlow::Continue(())
+    /// })?;
+    /// assert_eq!(found, objective.value_and_gradient(&points, &slices)?);
+    /// assert!(shares[0] == 0.0 && shares.is_sorted());
+    /// let stopped = objective.value_and_gradient_observed(&points, &slices, |_| ControlFlow::Break(()));
+    /// assert_eq!(stopped, Err(ObjectiveError::Stopped));
+    /// # Ok::<(), ObjectiveError>(())
+    /// ```
     pub fn value_and_gradient_observed(
         &self,
         points: &[f64],

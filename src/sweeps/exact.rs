@@ -38,6 +38,25 @@ impl Objective {
     ///
     /// # Errors
     /// As [`Objective::cramer`]; [`ObjectiveError::Stopped`] if `observe` breaks off.
+    ///
+    /// ```
+    /// use std::ops::ControlFlow;
+    ///
+    /// use fsot::objective::ObjectiveError;
+    /// use fsot::{Config, Extent, Objective};
+    ///
+    /// let objective = Objective::new(&Config::new(Extent::still(8, 8), 2))?;
+    /// let (points, mut shares) = (vec![0.5; 128], Vec::new());
+    /// let found = objective.cramer_observed(&points, |share| {
+    ///     shares.push(share);
+    ///     ControlFlow::Continue(())
+    /// })?;
+    /// assert_eq!(found, objective.cramer(&points)?);
+    /// assert!(shares[0] == 0.0 && shares.is_sorted());
+    /// let stopped = objective.cramer_observed(&points, |_| ControlFlow::Break(()));
+    /// assert_eq!(stopped, Err(ObjectiveError::Stopped));
+    /// # Ok::<(), ObjectiveError>(())
+    /// ```
     pub fn cramer_observed(
         &self,
         points: &[f64],
