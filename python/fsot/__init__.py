@@ -15,6 +15,8 @@ You can stop here.
 from ._fsot import Checkpoint, Config, Kernel, Report, Step, Until, __version__
 from ._make import table
 from ._optimizer import Interrupted, Optimizer
+from ._point_sets import classes, color_stippling, progressive, stippling
+from ._points import Points
 from ._table import Table
 
 __all__ = [
@@ -23,10 +25,15 @@ __all__ = [
     "Interrupted",
     "Kernel",
     "Optimizer",
+    "Points",
     "Report",
     "Step",
     "Table",
     "Until",
     "__version__",
+    "classes",
+    "color_stippling",
+    "progressive",
+    "stippling",
     "table",
 ]

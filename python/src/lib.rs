@@ -6,10 +6,13 @@ mod arrays;
 mod checkpoint;
 mod config;
 mod counts;
+mod drawing;
 mod errors;
 mod json;
 mod kernel;
 mod optimizer;
+mod picture;
+mod points;
 mod pool;
 mod step;
 mod tables;
@@ -28,9 +31,13 @@ mod _fsot {
     #[pymodule_export]
     use crate::config::{PyConfig, configure};
     #[pymodule_export]
+    use crate::drawing::draw_points;
+    #[pymodule_export]
     use crate::kernel::PyKernel;
     #[pymodule_export]
     use crate::optimizer::{PyOptimizer, PyReport};
+    #[pymodule_export]
+    use crate::points::{plan_classes, plan_color_stippling, plan_progressive, plan_stippling, save_points};
     #[pymodule_export]
     use crate::step::PyStep;
     #[pymodule_export]
