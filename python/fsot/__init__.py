@@ -12,7 +12,23 @@ cancel under the filter that follows: the eye, a denoiser, temporal antialiasing
 You can stop here.
 """
 
-from ._fsot import Checkpoint, Config, Kernel, Report, Step, Until, __version__
+from . import metrics
+from ._fsot import (
+    BELOW_ONE,
+    Checkpoint,
+    Classes,
+    Config,
+    Demand,
+    Kernel,
+    Objective,
+    Report,
+    Slices,
+    Step,
+    Target,
+    Term,
+    Until,
+    __version__,
+)
 from ._make import table
 from ._optimizer import Interrupted, Optimizer
 from ._point_sets import classes, color_stippling, progressive, stippling
@@ -20,19 +36,27 @@ from ._points import Points
 from ._table import Table
 
 __all__ = [
+    "BELOW_ONE",
     "Checkpoint",
+    "Classes",
     "Config",
+    "Demand",
     "Interrupted",
     "Kernel",
+    "Objective",
     "Optimizer",
     "Points",
     "Report",
+    "Slices",
     "Step",
     "Table",
+    "Target",
+    "Term",
     "Until",
     "__version__",
     "classes",
     "color_stippling",
+    "metrics",
     "progressive",
     "stippling",
     "table",

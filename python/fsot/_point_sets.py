@@ -206,8 +206,9 @@ def stippling(
     OSError
         A file that cannot be read.
     ValueError
-        A file that is no picture; an array of another shape, with values that are negative or not finite, or
-        with nothing in it (all white, or all black where ``tone`` is ``"bright"``).
+        A file that is no picture; an array of another shape, with NaN, with light that is negative or
+        infinite where light draws points, or with nothing that draws any (all white, or all black where
+        ``tone`` is ``"bright"``).
     TypeError
         An array of other numbers.
 

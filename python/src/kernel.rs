@@ -145,9 +145,7 @@ impl PyKernel {
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let extent = Extent { frames: frames.0, height: height.0, width: width.0, spp: 1 };
         let taps = py.detach(|| self.0.taps(&extent)).python()?;
-        let row = |tap: &Tap| [f64::from(tap.dt), f64::from(tap.dy), f64::from(tap.dx), tap.weight];
-        let values = taps.iter().flat_map(row).collect();
-        Ok(to_numpy(py, Array2::from_shape_vec((taps.len(), 4), values).expect("four numbers a tap")))
+        Ok(rows(py, &taps))
     }
 
     /// Plain data, as in metadata.
@@ -245,4 +243,11 @@ pub fn in_time(temporal: &Bound<'_, PyAny>) -> PyResult<TemporalKernel> {
         )));
     }
     Ok(TemporalKernel::Taps(values))
+}
+
+/// Taps as rows of `[dt, dy, dx, weight]`.
+pub fn rows<'py>(py: Python<'py>, taps: &[Tap]) -> Bound<'py, PyArray2<f64>> {
+    let row = |tap: &Tap| [f64::from(tap.dt), f64::from(tap.dy), f64::from(tap.dx), tap.weight];
+    let values = taps.iter().flat_map(row).collect();
+    to_numpy(py, Array2::from_shape_vec((taps.len(), 4), values).expect("four numbers a tap"))
 }
