@@ -82,7 +82,7 @@ def classes(
     >>> fsot.classes([64, 32], subsets="every", slices=100, seed=7)
     <fsot.Points: 96 points of 2 dimensions, 2 labels>
     """
-    each = [counts] if isinstance(counts, numbers.Integral) else list(counts)  # type: ignore[arg-type]
+    each = [counts] if isinstance(counts, (int, numpy.integer)) else list(counts)
     plan = _fsot.plan_classes(each, dims, subsets, domain, seed)
     return _made(
         plan,
