@@ -6,7 +6,7 @@ import os
 from typing import Any
 
 import numpy
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from . import _fsot
 from ._table import _count
@@ -103,12 +103,8 @@ class Points:
     def __len__(self) -> int:
         return len(self._array)
 
-    def __array__(
-        self, dtype: numpy.dtype[Any] | None = None, copy: bool | None = None
-    ) -> NDArray[Any]:
-        if copy is False:
-            return numpy.asarray(self._array, dtype=dtype)
-        return numpy.array(self._array, dtype=dtype, copy=bool(copy))
+    def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
+        return numpy.array(self._array, dtype=dtype, copy=copy)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Points):
