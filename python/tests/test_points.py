@@ -46,13 +46,14 @@ def neighbours(points):
 
 
 def test_only_sets_that_are_asked_for_are_uniform():
-    alone = fsot.classes([96, 96], subsets=[[0], [1]], slices=300, **QUIET)
-    both = fsot.classes([96, 96], subsets="every", slices=300, **QUIET)
+    alone = fsot.classes([96, 96], subsets=[[0], [1]], slices=1000, **QUIET)
+    both = fsot.classes([96, 96], subsets="every", slices=1000, **QUIET)
     for made in (alone, both):
-        assert max(discrepancy(made.of(0)), discrepancy(made.of(1))) < 1 / 4
-    # Points of two classes that know nothing of each other may coincide.
-    nearest = [numpy.percentile(neighbours(made.array), 5) for made in (alone, both)]
-    assert nearest[1] > 2 * nearest[0], nearest
+        assert max(discrepancy(made.of(0)), discrepancy(made.of(1))) < 1 / 6
+    # Points of two classes that know nothing of each other may coincide: the lower quartile of distances is
+    # 1.3 to 1.6 times as large where they do, over seeds.
+    nearest = [numpy.percentile(neighbours(made.array), 25) for made in (alone, both)]
+    assert nearest[1] > 1.2 * nearest[0], nearest
 
 
 def test_pairs_of_three_classes_are_uniform_if_every_set_is():
