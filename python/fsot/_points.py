@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import os
 from typing import Any
 
@@ -75,10 +76,10 @@ class Points:
         """
         return float(self._metadata.get("aspect", 1.0))
 
-    def of(self, label: int) -> NDArray[numpy.float32]:
-        """The points with this label, ``[m, d]``, a copy; all of them for 0 where points have no labels."""
-        labels = numpy.zeros(len(self), numpy.uint32) if self._labels is None else self._labels
-        points: NDArray[numpy.float32] = self._array[labels == label]
+    def of(self, *labels: int) -> NDArray[numpy.float32]:
+        """The points with one of these labels, ``[m, d]``, a copy; points without labels have the label 0."""
+        own = numpy.zeros(len(self), numpy.uint32) if self._labels is None else self._labels
+        points: NDArray[numpy.float32] = self._array[numpy.isin(own, [operator.index(one) for one in labels])]
         return points
 
     def save(self, path: str | os.PathLike[str]) -> None:

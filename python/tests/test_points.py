@@ -59,7 +59,11 @@ def test_only_sets_that_are_asked_for_are_uniform():
 def test_pairs_of_three_classes_are_uniform_if_every_set_is():
     made = fsot.classes([64, 64, 64], subsets="every", slices=400, **QUIET)
     for pair in ([0, 1], [0, 2], [1, 2]):
-        assert discrepancy(made.array[numpy.isin(made.labels, pair)]) < 1 / 4
+        assert discrepancy(made.of(*pair)) < 1 / 4
+    assert numpy.array_equal(made.of(0, 1, 2), made.array) and made.of(3).shape == made.of().shape == (0, 2)
+    assert fsot.Points([[0.5]]).of(0).shape == (1, 1)
+    with pytest.raises(TypeError):
+        made.of([0, 1])
 
 
 def test_beginnings_of_a_sequence_are_uniform():
