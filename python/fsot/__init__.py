@@ -31,6 +31,8 @@ from ._fsot import (
 )
 from ._make import table
 from ._optimizer import Interrupted, Optimizer
+from ._point_sets import classes, color_stippling, progressive, stippling
+from ._points import Points
 from ._table import Table
 
 __all__ = [
@@ -43,6 +45,7 @@ __all__ = [
     "Kernel",
     "Objective",
     "Optimizer",
+    "Points",
     "Report",
     "Slices",
     "Step",
@@ -51,6 +54,10 @@ __all__ = [
     "Term",
     "Until",
     "__version__",
+    "classes",
+    "color_stippling",
     "metrics",
+    "progressive",
+    "stippling",
     "table",
 ]

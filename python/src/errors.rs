@@ -27,19 +27,31 @@ pub fn refused(sentence: impl ToString) -> PyErr {
 
 fn exception(error: &(dyn Error + 'static)) -> PyErr {
     match refusal_of_system(error) {
-        Some(number) => PyOSError::new_err((number, error.to_string())),
+        Some(refusal) => of_system(refusal, error.to_string()),
         None => refused(error),
     }
 }
 
-/// The number of the system's refusal, if this is one.
-fn refusal_of_system(error: &(dyn Error + 'static)) -> Option<i32> {
+/// A refusal of the system's, in these words.
+pub fn of_system(refusal: &io::Error, sentence: String) -> PyErr {
+    match refusal.raw_os_error() {
+        Some(number) => PyOSError::new_err((number, sentence)),
+        // `FileNotFoundError` and the like.
+        None => io::Error::new(refusal.kind(), sentence).into(),
+    }
+}
+
+/// What the system has said, if this is a refusal of its.
+fn refusal_of_system<'a>(error: &'a (dyn Error + 'static)) -> Option<&'a io::Error> {
+    use io::ErrorKind::{IsADirectory, NotADirectory, NotFound, PermissionDenied};
     // A checkpoint's error shows what it wraps, and so doesn't name it as its source.
     if let Some(CheckpointError::File { problem, .. }) = error.downcast_ref() {
         return refusal_of_system(&**problem);
     }
-    match error.downcast_ref::<io::Error>() {
-        Some(error) => error.raw_os_error(),
-        None => error.source().and_then(refusal_of_system),
-    }
+    let Some(refusal) = error.downcast_ref::<io::Error>() else {
+        return error.source().and_then(refusal_of_system);
+    };
+    // The library finds some of them out by itself, which then have no number; others are of a file's bytes.
+    let is_found_out = matches!(refusal.kind(), NotFound | PermissionDenied | IsADirectory | NotADirectory);
+    (refusal.raw_os_error().is_some() || is_found_out).then_some(refusal)
 }

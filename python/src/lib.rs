@@ -8,6 +8,7 @@ mod classes;
 mod config;
 mod counts;
 mod demand;
+mod drawing;
 mod errors;
 mod json;
 mod kernel;
@@ -16,6 +17,8 @@ mod metrics;
 mod objective;
 mod optimizer;
 mod own;
+mod picture;
+mod points;
 mod pool;
 mod settings;
 mod slices;
@@ -42,6 +45,8 @@ mod _fsot {
     #[pymodule_export]
     use crate::demand::PyDemand;
     #[pymodule_export]
+    use crate::drawing::draw_points;
+    #[pymodule_export]
     use crate::kernel::PyKernel;
     #[pymodule_export]
     use crate::make::configure;
@@ -59,6 +64,8 @@ mod _fsot {
     use crate::objective::PyObjective;
     #[pymodule_export]
     use crate::optimizer::{PyOptimizer, PyReport};
+    #[pymodule_export]
+    use crate::points::{plan_classes, plan_color_stippling, plan_progressive, plan_stippling, save_points};
     #[pymodule_export]
     use crate::slices::PySlices;
     #[pymodule_export]
