@@ -23,6 +23,7 @@ def table(
     kernel: _fsot.Kernel | None = None,
     groups: Sequence[Sequence[int] | tuple[Sequence[int], float]] | None = None,
     domain: str | list[str] | None = None,
+    demand: _fsot.Demand | None = None,
     seed: int = 0,
     seconds: float | None = None,
     sweeps: int | None = None,
@@ -111,6 +112,6 @@ def table(
         sigma=sigma, temporal=temporal, kernel=kernel, groups=groups, domain=domain, seed=seed,
     )
     until = _fsot.until(seconds, sweeps, slices)
-    optimizer = Optimizer(config, threads=threads)
+    optimizer = Optimizer(config, demand=demand, threads=threads)
     optimizer._follow(until, callback, progress)
     return optimizer.table()

@@ -24,6 +24,11 @@ class Optimizer(_fsot.Optimizer):
     ----------
     config : Config
         What is optimised.
+    demand : Demand, optional
+        The part of the table that counts; all by default. Other samples keep their bits.
+    start : Table or array_like, optional
+        Numbers ``[frame, y, x, sample, dim]`` in ``[0, 1)`` to go on from, instead of the white noise of the
+        seed. A `Table` goes on with the random numbers after those of its run, unless there is a demand.
     threads : int, optional
         Threads to work on; one a core by default. The result doesn't depend on it.
 

@@ -54,7 +54,7 @@ class Table:
         return cls(*_fsot.load_table(path))
 
     def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
-        return numpy.array(self._array, dtype=dtype, copy=bool(copy))
+        return numpy.array(self._array, dtype=dtype, copy=copy)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Table) and numpy.array_equal(self._array, other._array)

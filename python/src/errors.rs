@@ -25,11 +25,6 @@ pub fn refused(sentence: impl ToString) -> PyErr {
     PyValueError::new_err(sentence.to_string())
 }
 
-/// What the command says went wrong, as an exception.
-pub fn failed(failure: fsot_cli::Failure) -> PyErr {
-    exception(&*failure)
-}
-
 fn exception(error: &(dyn Error + 'static)) -> PyErr {
     match refusal_of_system(error) {
         Some(number) => PyOSError::new_err((number, error.to_string())),

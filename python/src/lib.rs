@@ -4,15 +4,25 @@ use pyo3::prelude::*;
 
 mod arrays;
 mod checkpoint;
+mod classes;
 mod config;
 mod counts;
+mod demand;
 mod errors;
 mod json;
 mod kernel;
+mod make;
+mod metrics;
+mod objective;
 mod optimizer;
+mod own;
 mod pool;
+mod settings;
+mod slices;
 mod step;
 mod tables;
+mod target;
+mod term;
 mod until;
 mod work;
 
@@ -26,15 +36,39 @@ mod _fsot {
     #[pymodule_export]
     use crate::checkpoint::PyCheckpoint;
     #[pymodule_export]
-    use crate::config::{PyConfig, configure};
+    use crate::classes::PyClasses;
+    #[pymodule_export]
+    use crate::config::PyConfig;
+    #[pymodule_export]
+    use crate::demand::PyDemand;
     #[pymodule_export]
     use crate::kernel::PyKernel;
     #[pymodule_export]
+    use crate::make::configure;
+    #[pymodule_export]
+    use crate::metrics::integrand::PyIntegrand;
+    #[pymodule_export]
+    use crate::metrics::integrands::PyIntegrands;
+    #[pymodule_export]
+    use crate::metrics::measure::{
+        measure_bias, measure_bound, measure_density_match, measure_discrepancy, measure_error_image,
+        measure_filtered_error, measure_histogram, measure_marginal, measure_set_error,
+        measure_sliced_distance, measure_spectra, spectra_of_image,
+    };
+    #[pymodule_export]
+    use crate::objective::PyObjective;
+    #[pymodule_export]
     use crate::optimizer::{PyOptimizer, PyReport};
+    #[pymodule_export]
+    use crate::slices::PySlices;
     #[pymodule_export]
     use crate::step::PyStep;
     #[pymodule_export]
     use crate::tables::{check_table, load_table, save_table};
+    #[pymodule_export]
+    use crate::target::PyTarget;
+    #[pymodule_export]
+    use crate::term::PyTerm;
     #[pymodule_export]
     use crate::until::{Until, until};
 
@@ -51,6 +85,7 @@ mod _fsot {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("BELOW_ONE", f64::from(fsot::config::BELOW_ONE))?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

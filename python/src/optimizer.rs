@@ -5,7 +5,7 @@ use std::sync::{Mutex, MutexGuard, TryLockError};
 
 use fsot::files::Metadata;
 use fsot::optimizer::StepReport;
-use fsot::{Config, ConfigError, Optimizer, RunReport};
+use fsot::{Config, ConfigError, Optimizer, RunReport, SampleTable};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
@@ -13,8 +13,10 @@ use crate::arrays::{table_of, table_to_numpy};
 use crate::checkpoint::PyCheckpoint;
 use crate::config::PyConfig;
 use crate::counts::Count;
+use crate::demand::PyDemand;
 use crate::errors::OrPython;
 use crate::json;
+use crate::own::raised;
 use crate::step::{Facts, PyStep, answer};
 use crate::until::Until;
 use crate::work::{Caller, Event, detached, watched};
@@ -57,6 +59,23 @@ pub struct PyOptimizer {
     threads: Option<usize>,
 }
 
+/// A table to go on from.
+struct Start {
+    table: SampleTable,
+    metadata: Option<Metadata>,
+}
+
+impl Start {
+    /// A `Table`, or an array without metadata.
+    fn of(start: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let metadata = match start.getattr_opt("metadata")? {
+            Some(metadata) if metadata.is_truthy()? => Some(json::of_python(&metadata)?),
+            _ => None,
+        };
+        Ok(Self { table: table_of(start)?, metadata })
+    }
+}
+
 enum Told {
     Progress(Facts),
     Step(PyStep),
@@ -68,17 +87,38 @@ const TELL: f64 = 0.1;
 #[pymethods]
 impl PyOptimizer {
     #[new]
-    #[pyo3(signature = (config, *, threads = None))]
-    fn new(py: Python<'_>, config: PyConfig, threads: Option<Count>) -> PyResult<Self> {
+    #[pyo3(signature = (config, *, demand = None, start = None, threads = None))]
+    fn new(
+        py: Python<'_>,
+        config: PyConfig,
+        demand: Option<PyDemand>,
+        start: Option<&Bound<'_, PyAny>>,
+        threads: Option<Count>,
+    ) -> PyResult<Self> {
         let threads = threads.map(|Count(threads)| threads);
+        let demand = demand.map(|demand| demand.of(config.0.dims)).transpose()?;
+        let start = start.map(Start::of).transpose()?;
         let plan = |caller: &Caller<'_, ()>| {
-            Optimizer::new_observed(config.0, |_| match caller.wants_an_end() {
+            let observe = |_| match caller.wants_an_end() {
                 true => ControlFlow::Break(()),
                 false => ControlFlow::Continue(()),
-            })
+            };
+            let config = config.0.clone();
+            match (&demand, start) {
+                (None, None) => Optimizer::new_observed(config, observe),
+                (None, Some(Start { table, metadata: Some(metadata) })) => {
+                    Optimizer::from_table_with(config, table, &metadata)
+                }
+                (None, Some(Start { table, metadata: None })) => Optimizer::from_table(config, table),
+                (Some(demand), start) => {
+                    let mut optimizer = Optimizer::for_demand_observed(config, demand, observe)?;
+                    start.map_or(Ok(()), |start| optimizer.start_from(start.table))?;
+                    Ok(optimizer)
+                }
+            }
         };
         let (optimizer, exception) = watched(py, threads, plan, |_| Ok(()))?;
-        if let Some(exception) = exception {
+        if let Some(exception) = exception.or_else(|| raised(&config.0)) {
             return Err(exception);
         }
         Ok(Self { state: Mutex::new(State { optimizer: optimizer.python()?, report: None }), threads })

@@ -10,7 +10,7 @@ use std::time::Duration;
 use pyo3::marker::Ungil;
 use pyo3::prelude::*;
 
-use crate::pool::pool;
+use crate::pool::Pool;
 
 /// How soon Ctrl-C is noticed, and how often progress is told.
 const NOTICE: Duration = Duration::from_millis(50);
@@ -25,7 +25,7 @@ pub fn detached<T: Ungil + Send>(
     threads: Option<usize>,
     work: impl FnOnce() -> T + Ungil + Send,
 ) -> PyResult<T> {
-    let pool = pool(threads)?;
+    let pool = Pool::of(threads)?;
     Ok(py.detach(|| pool.install(work)))
 }
 
@@ -67,7 +67,7 @@ pub fn watched<T: Send, Message: Send>(
     work: impl FnOnce(&Caller<'_, Message>) -> T + Send,
     mut look: impl FnMut(Event<Message>) -> PyResult<()>,
 ) -> PyResult<(T, Option<PyErr>)> {
-    let pool = pool(threads)?;
+    let pool = Pool::of(threads)?;
     let stop = AtomicBool::new(false);
     let (messages, heard) = channel();
     let caller = Caller { messages, stop: &stop };

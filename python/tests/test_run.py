@@ -103,9 +103,15 @@ def test_an_optimizer_that_runs_says_so():
 
 
 def test_a_run_may_start_another():
+    # Also where one thread is all that there is, which the outer run holds.
     inside = []
-    outside = small(callback=lambda step: inside.append(small()) if step.step == 3 else None)
-    assert inside == [small()] and outside == small()
+
+    def nest(step, depth=3):
+        if step.step == 3 and depth:
+            inside.append(small(threads=1, callback=lambda step: nest(step, depth - 1)))
+
+    assert small(threads=1, callback=nest) == small()
+    assert inside == 3 * [small()]
 
 
 @pytest.mark.parametrize("threads", [1, 2, 3])
@@ -321,6 +327,22 @@ def test_points_are_copies_and_can_be_set():
     assert optimizer.points.min() < 0.25 < optimizer.points.max()
     optimizer.points = points
     assert (optimizer.points == 0.25).all()
+
+
+def test_a_table_goes_on_with_the_random_numbers_after_its_own():
+    config = fsot.Config(16, 16)
+    first = fsot.Optimizer(config)
+    first.run(fsot.Until.slices(32), progress=False)
+    table = first.table()
+    first.run(fsot.Until.slices(32), progress=False)
+    second = fsot.Optimizer(config, start=table)
+    assert numpy.array_equal(second.points, table.array)
+    second.run(fsot.Until.slices(32), progress=False)
+    assert numpy.array_equal(second.points, first.points)
+    # Numbers alone don't say where their run ended.
+    third = fsot.Optimizer(config, start=table.array)
+    third.run(fsot.Until.slices(32), progress=False)
+    assert not numpy.array_equal(third.points, first.points)
 
 
 @pytest.mark.parametrize(

@@ -95,6 +95,31 @@ impl<'a> Samples<'a> {
         Ok(Self { extent: Extent::points(values.len() / dims), dims, values: values.into() })
     }
 
+    /// The same samples on a lattice of pixels and frames, in its order: those of a table in double precision,
+    /// say. O(1).
+    ///
+    /// ```
+    /// use fsot::Extent;
+    /// use fsot::metrics::Samples;
+    ///
+    /// let values: Vec<f64> = (0..24).map(|i| f64::from(i) / 24.0).collect();
+    /// let samples = Samples::points(&values, 2)?.on(Extent::still(3, 4))?;
+    /// assert_eq!(samples.shape(), [1, 3, 4, 1, 2]);
+    /// assert!(Samples::points(&values, 2)?.on(Extent::still(4, 4)).is_err());
+    /// # Ok::<(), fsot::metrics::MeasureError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A lattice of another number of samples.
+    pub fn on(self, extent: Extent) -> Result<Self, MeasureError> {
+        let on = Self { extent, ..self };
+        if extent.samples() != self.count() {
+            let [given, expected] = [self.shape(), on.shape()].map(Box::new);
+            return Err(MeasureError::OtherShape { given, expected });
+        }
+        Ok(on)
+    }
+
     /// Some consecutive samples as points: a prefix of a sequence, a class, a pixel. O(1).
     ///
     /// # Errors
