@@ -88,9 +88,8 @@ impl PyObjective {
 
     /// Lengths of the axes ``[frame, y, x, sample, dim]`` of the points.
     #[getter]
-    fn shape(&self) -> [usize; 5] {
-        let Extent { frames, height, width, spp } = self.objective.extent();
-        [frames, height, width, spp, self.objective.dims()]
+    fn shape(&self) -> (usize, usize, usize, usize, usize) {
+        self.lengths().into()
     }
 
     /// The configuration.
@@ -228,7 +227,7 @@ impl PyObjective {
     }
 
     fn __repr__(&self) -> String {
-        let [frames, height, width, spp, dims] = self.shape();
+        let [frames, height, width, spp, dims] = self.lengths();
         let terms = self.groups.of_terms.len();
         format!("<Objective of {terms} terms for [{frames}, {height}, {width}, {spp}, {dims}]>")
     }
@@ -271,9 +270,14 @@ impl PyObjective {
         Ok((value, to_numpy(py, gradient)))
     }
 
+    fn lengths(&self) -> [usize; 5] {
+        let Extent { frames, height, width, spp } = self.objective.extent();
+        [frames, height, width, spp, self.objective.dims()]
+    }
+
     /// Refuses other arrangements of as many numbers.
     fn check_shape(&self, given: &[usize]) -> PyResult<()> {
-        let of_table = self.shape();
+        let of_table = self.lengths();
         let (all, dims) = (of_table.iter().product(), of_table[4]);
         let samples = of_table[..4].iter().product();
         let long = |shape: &[usize]| shape.iter().copied().filter(|&len| len != 1).collect::<Vec<_>>();
