@@ -14,6 +14,7 @@ You can stop here.
 
 from . import metrics
 from ._fsot import Checkpoint, Config, Kernel, Report, Step, Until, __version__
+from ._exchange import Exported, Imported, import_table
 from ._make import table
 from ._optimizer import Interrupted, Optimizer
 from ._table import Table
@@ -21,6 +22,8 @@ from ._table import Table
 __all__ = [
     "Checkpoint",
     "Config",
+    "Exported",
+    "Imported",
     "Interrupted",
     "Kernel",
     "Optimizer",
@@ -29,6 +32,7 @@ __all__ = [
     "Table",
     "Until",
     "__version__",
+    "import_table",
     "metrics",
     "table",
 ]

@@ -25,6 +25,11 @@ pub fn refused(sentence: impl ToString) -> PyErr {
     PyValueError::new_err(sentence.to_string())
 }
 
+/// A failure of the command's.
+pub fn failed(failure: &(dyn Error + Send + Sync + 'static)) -> PyErr {
+    exception(failure)
+}
+
 fn exception(error: &(dyn Error + 'static)) -> PyErr {
     match refusal_of_system(error) {
         Some(number) => PyOSError::new_err((number, error.to_string())),

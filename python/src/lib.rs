@@ -7,6 +7,7 @@ mod checkpoint;
 mod config;
 mod counts;
 mod errors;
+mod exchange;
 mod json;
 mod kernel;
 mod metrics;
@@ -16,6 +17,7 @@ mod step;
 mod tables;
 mod until;
 mod work;
+mod worth;
 
 #[pymodule]
 mod _fsot {
@@ -25,6 +27,8 @@ mod _fsot {
     use crate::checkpoint::PyCheckpoint;
     #[pymodule_export]
     use crate::config::{PyConfig, configure};
+    #[pymodule_export]
+    use crate::exchange::{export_table, import_table};
     #[pymodule_export]
     use crate::kernel::PyKernel;
     #[pymodule_export]
@@ -42,9 +46,11 @@ mod _fsot {
     #[pymodule_export]
     use crate::step::PyStep;
     #[pymodule_export]
-    use crate::tables::{check_table, load_table, save_table};
+    use crate::tables::{check_table, displacement, left_beside, load_table, save_table};
     #[pymodule_export]
     use crate::until::{Until, until};
+    #[pymodule_export]
+    use crate::worth::{glance_at_table, inspect_table, mapped_table, report_tables};
 
     /// Runs the command `fsot` with these arguments, and returns its exit code.
     #[pyfunction]
