@@ -13,7 +13,7 @@ from . import _fsot
 
 # Text takes the colours of the page around it, light or dark.
 _FIGURE = "margin:0;width:150px"
-_IMAGE = "width:150px;height:{}px;image-rendering:pixelated;border:1px solid #8888;box-sizing:border-box"
+_IMAGE = "width:150px;height:{}px;image-rendering:{};border:1px solid #8888;box-sizing:border-box"
 _WORDS = "font-size:11px;line-height:1.3;opacity:.75;margin-top:4px"
 
 
@@ -33,10 +33,11 @@ def page(array: NDArray[numpy.float32], metadata: dict[str, Any], title: str) ->
 def _figure(what: str, png: bytes) -> str:
     width, height = (int.from_bytes(png[at : at + 4], "big") for at in (16, 20))
     text = html.escape(what)
-    tall = min(300, max(2, round(150 * height / width)))
+    tall = min(300, max(12, round(150 * height / width)))
+    style = _IMAGE.format(tall, "pixelated" if width <= 150 else "auto")
     data = base64.b64encode(png).decode("ascii")
     return (
-        f'<figure style="{_FIGURE}"><img alt="{text}" style="{_IMAGE.format(tall)}" '
+        f'<figure style="{_FIGURE}"><img alt="{text}" style="{style}" '
         f'src="data:image/png;base64,{data}"><figcaption style="{_WORDS}">{text}</figcaption></figure>'
     )
 

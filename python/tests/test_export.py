@@ -24,6 +24,7 @@ FORMATS = {
     "raw": ("mask.raw", [None, 8, "half"]),
     "fast": ("mask.bin", [None]),
     "c": ("mask.h", [None, 16]),
+    "pbrt": ("mask.cpp", [None]),
     "csv": ("mask.csv", [None]),
     "dat": ("mask.dat", [None]),
 }
@@ -69,17 +70,6 @@ def test_files_are_those_of_the_command_and_come_back(format, table, command, tm
         assert back.record == exported.record_path and name in str(back)
         command("import", theirs / name, "--out", tmp_path / "back.npy")
         assert fsot.Table.load(tmp_path / "back.npy") == back.table
-
-
-def test_pbrt_takes_textures_of_its_size(table, tmp_path):
-    with pytest.raises(ValueError):
-        table.export(tmp_path / "noise.cpp")
-    assert list(tmp_path.iterdir()) == []
-    scalar = fsot.Table(numpy.random.default_rng(0).random((2, 128, 128, 1, 1), dtype=numpy.float32))
-    scalar.export(tmp_path / "noise.cpp")
-    numpy.testing.assert_array_equal(
-        fsot.import_table(tmp_path / "noise.cpp").table.array, decoded(scalar, 16)
-    )
 
 
 def test_names_and_rounding_are_the_command_s(table, command, tmp_path):
