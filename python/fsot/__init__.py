@@ -13,23 +13,45 @@ You can stop here.
 """
 
 from . import metrics
-from ._fsot import Checkpoint, Config, Kernel, Report, Step, Until, __version__
 from ._exchange import Exported, Imported, import_table
+from ._fsot import (
+    BELOW_ONE,
+    Checkpoint,
+    Classes,
+    Config,
+    Demand,
+    Kernel,
+    Objective,
+    Report,
+    Slices,
+    Step,
+    Target,
+    Term,
+    Until,
+    __version__,
+)
 from ._make import table
 from ._optimizer import Interrupted, Optimizer
 from ._table import Table
 
 __all__ = [
+    "BELOW_ONE",
     "Checkpoint",
+    "Classes",
     "Config",
+    "Demand",
     "Exported",
     "Imported",
     "Interrupted",
     "Kernel",
+    "Objective",
     "Optimizer",
     "Report",
+    "Slices",
     "Step",
     "Table",
+    "Target",
+    "Term",
     "Until",
     "__version__",
     "import_table",

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+
+from numpy.typing import ArrayLike
 
 from . import _fsot
 from ._optimizer import Optimizer
@@ -17,10 +19,11 @@ def table(
     dims: int = 2,
     *,
     sigma: float | None = None,
-    temporal=None,
-    kernel=None,
-    groups=None,
-    domain=None,
+    temporal: str | ArrayLike | None = None,
+    kernel: _fsot.Kernel | None = None,
+    groups: Sequence[Sequence[int] | tuple[Sequence[int], float]] | None = None,
+    domain: str | list[str] | None = None,
+    demand: _fsot.Demand | None = None,
     seed: int = 0,
     seconds: float | None = None,
     sweeps: int | None = None,
@@ -29,12 +32,86 @@ def table(
     progress: bool = True,
     callback: Callable[[_fsot.Step], bool | None] | None = None,
 ) -> Table:
-    """Makes a sample table."""
+    """Makes a sample table.
+
+    Parameters
+    ----------
+    width, height : int
+        Pixels of the tile, which repeats. 64 is good for most uses; `dims`, `frames` and `spp` cost memory,
+        too: a table holds at most 2**31 - 1 numbers.
+    frames : int
+        Frames of the animation, which repeats.
+    spp : int
+        Samples per pixel and frame.
+    dims : int
+        Numbers of a sample, 1 to 64.
+    sigma : float, optional
+        Of the Gaussian ``exp(-r**2 / sigma**2)`` that the picture will be seen through, in pixels, above 0
+        and at most 1e6; 2.1 by default. Its standard deviation is ``sigma / sqrt(2)``.
+    temporal : str or array_like, optional
+        The filter over frames: ``"ema:0.1"`` (temporal antialiasing that keeps 90 % of the history),
+        ``"perceptual:60"`` (the eye, at 60 frames per second), ``"gaussian:SIGMA"``, ``"box:N"``,
+        ``"binomial:N"``, ``"none"``, or the weights of the current frame, the one before, and so on. The eye
+        at 60 frames per second by default where there are several frames.
+    kernel : Kernel, optional
+        The whole filter, instead of ``sigma``.
+    groups : sequence, optional
+        Which dimensions the renderer uses together: lists of dimensions such as ``[[0, 1], [2]]``, or pairs
+        of a list and its weight. Consecutive pairs by default, and all of them at half the weight.
+    domain : {"interval", "torus"} or list of these, optional
+        ``"torus"`` where numbers will be shifted modulo 1, in all dimensions or in each. Intervals by
+        default.
+    seed : int
+        Of all random numbers, 0 to 2**64 - 1. The same arguments make the same bits, on any number of
+        threads.
+    seconds, sweeps, slices : optional
+        How long to work: `Until.seconds`, `Until.sweeps`, `Until.slices`, or ``sweeps`` after ``slices``. By
+        default as much as is usually worth it, some ten seconds of a core for large tables and less for small
+        ones. What is made in a number of ``seconds`` depends on the machine; its metadata make it again.
+    threads : int, optional
+        Threads to work on, 1 to 1024; one a core by default.
+    progress : bool
+        Whether to show a bar, on a terminal or in a notebook.
+    callback : callable, optional
+        Called with a `Step` after each step; ``False`` ends the run. An exception ends it, too, and is
+        raised.
+
+    Returns
+    -------
+    Table
+        Numbers in ``[0, 1)``, `Table.array` of shape ``[frame, y, x, sample, dim]``, and where they come
+        from. Ctrl-C ends a run early and returns what it had reached, with the warning `Interrupted`.
+
+    Raises
+    ------
+    ValueError
+        For a number out of its range. Its sentence says which, and what to do.
+    TypeError
+        For what is no number where one is needed.
+
+    See Also
+    --------
+    Config, Optimizer : the same, one thing at a time.
+
+    Examples
+    --------
+    A still picture with 4 samples of 2 numbers per pixel:
+
+    >>> import fsot
+    >>> table = fsot.table(32, 32, spp=4, sweeps=20, seed=7)
+    >>> table
+    <fsot.Table: 1 frame, 32 x 32 pixels, 4 samples of 2 dimensions>
+
+    An animation under temporal antialiasing:
+
+    >>> fsot.table(16, 16, frames=8, temporal="ema:0.1", sweeps=5)
+    <fsot.Table: 8 frames, 16 x 16 pixels, 1 sample of 2 dimensions>
+    """
     config = _fsot.configure(
         width, height, frames, spp, dims,
         sigma=sigma, temporal=temporal, kernel=kernel, groups=groups, domain=domain, seed=seed,
     )
     until = _fsot.until(seconds, sweeps, slices)
-    optimizer = Optimizer(config, threads=threads)
+    optimizer = Optimizer(config, demand=demand, threads=threads)
     optimizer._follow(until, callback, progress)
     return optimizer.table()

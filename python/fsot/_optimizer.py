@@ -24,9 +24,11 @@ class Optimizer(_fsot.Optimizer):
     ----------
     config : Config
         What is optimised.
+    demand : Demand, optional
+        The part of the table that counts; all by default. Other samples keep their bits.
     start : Table or array_like, optional
         Numbers ``[frame, y, x, sample, dim]`` in ``[0, 1)`` to go on from, instead of the white noise of the
-        seed. A `Table` goes on with the random numbers after those of its run.
+        seed. A `Table` goes on with the random numbers after those of its run, unless there is a demand.
     threads : int, optional
         Threads to work on; one a core by default. The result doesn't depend on it.
 
@@ -80,7 +82,13 @@ class Optimizer(_fsot.Optimizer):
         """The table as it is now, with the metadata of the last run."""
         return made(*self._table())
 
-    def _follow(self, until, callback, progress, depth=1):
+    def _follow(
+        self,
+        until: _fsot.Until | None,
+        callback: Callable[[_fsot.Step], bool | None] | None,
+        progress: bool,
+        depth: int = 1,
+    ) -> _fsot.Report:
         """``depth``: frames of this package below the caller, whose line a warning names."""
         with bar(progress) as show:
             report, error = self._run(until, callback, show)

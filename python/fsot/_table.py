@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from . import _fsot, _glance
 from ._figures import flat_figures
@@ -303,7 +303,7 @@ class Table:
         files, record_path, record = _fsot.export_table(path, self._array, format, depth, rounding, name)
         return Exported(tuple(files), record_path, record)
 
-    def __array__(self, dtype=None, copy=None):
+    def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
         return numpy.array(self._array, dtype=dtype, copy=copy)
 
     def __eq__(self, other: object) -> bool:

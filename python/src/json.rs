@@ -37,5 +37,13 @@ pub fn of_python<T: DeserializeOwned>(object: &Bound<'_, PyAny>) -> PyResult<T> 
 /// # Errors
 /// A `ValueError` for what is no `T`.
 pub fn of_text<T: DeserializeOwned>(text: &str) -> PyResult<T> {
-    serde_json::from_str(text).map_err(|error| refused(format!("{error}: correct that")))
+    serde_json::from_str(text).map_err(|error| {
+        let sentence = format!("{error}: correct that");
+        // The library names what Rust calls.
+        refused(
+            sentence
+                .replace("Classes::custom", "Classes.listed")
+                .replace("Target::custom", "Target.quantiles"),
+        )
+    })
 }

@@ -4,33 +4,51 @@ use pyo3::prelude::*;
 
 mod arrays;
 mod checkpoint;
+mod classes;
 mod config;
 mod counts;
+mod demand;
 mod errors;
 mod exchange;
 mod json;
 mod kernel;
+mod make;
 mod metrics;
+mod objective;
 mod optimizer;
+mod own;
 mod pool;
+mod settings;
+mod slices;
 mod step;
 mod tables;
+mod target;
+mod term;
 mod until;
 mod work;
 mod worth;
 
 #[pymodule]
 mod _fsot {
+    use std::ffi::OsString;
+    use std::io::{self, Write};
+
     use pyo3::prelude::*;
 
     #[pymodule_export]
     use crate::checkpoint::PyCheckpoint;
     #[pymodule_export]
-    use crate::config::{PyConfig, configure};
+    use crate::classes::PyClasses;
+    #[pymodule_export]
+    use crate::config::PyConfig;
+    #[pymodule_export]
+    use crate::demand::PyDemand;
     #[pymodule_export]
     use crate::exchange::{export_table, import_table};
     #[pymodule_export]
     use crate::kernel::PyKernel;
+    #[pymodule_export]
+    use crate::make::configure;
     #[pymodule_export]
     use crate::metrics::integrand::PyIntegrand;
     #[pymodule_export]
@@ -42,11 +60,19 @@ mod _fsot {
         measure_sliced_distance, measure_spectra, spectra_of_image,
     };
     #[pymodule_export]
+    use crate::objective::PyObjective;
+    #[pymodule_export]
     use crate::optimizer::{PyOptimizer, PyReport};
+    #[pymodule_export]
+    use crate::slices::PySlices;
     #[pymodule_export]
     use crate::step::PyStep;
     #[pymodule_export]
     use crate::tables::{check_table, displacement, left_beside, load_table, save_table};
+    #[pymodule_export]
+    use crate::target::PyTarget;
+    #[pymodule_export]
+    use crate::term::PyTerm;
     #[pymodule_export]
     use crate::until::{Until, until};
     #[pymodule_export]
@@ -54,12 +80,18 @@ mod _fsot {
 
     /// Runs the command `fsot` with these arguments, and returns its exit code.
     #[pyfunction]
-    fn command(py: Python<'_>, arguments: Vec<String>) -> u8 {
-        py.detach(|| fsot_cli::command(arguments))
+    fn command(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
+        py.detach(|| {
+            let code = fsot_cli::command(arguments);
+            // Nobody else does: the process is Python's. Who reads it may have gone away.
+            let _ = io::stdout().flush();
+            code
+        })
     }
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("BELOW_ONE", f64::from(fsot::config::BELOW_ONE))?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -13,8 +13,10 @@ use crate::arrays::{table_of, table_to_numpy};
 use crate::checkpoint::PyCheckpoint;
 use crate::config::PyConfig;
 use crate::counts::Count;
+use crate::demand::PyDemand;
 use crate::errors::OrPython;
 use crate::json;
+use crate::own::raised;
 use crate::step::{Facts, PyStep, answer};
 use crate::until::Until;
 use crate::work::{Caller, Event, detached, watched};
@@ -85,30 +87,38 @@ const TELL: f64 = 0.1;
 #[pymethods]
 impl PyOptimizer {
     #[new]
-    #[pyo3(signature = (config, *, start = None, threads = None))]
+    #[pyo3(signature = (config, *, demand = None, start = None, threads = None))]
     fn new(
         py: Python<'_>,
         config: PyConfig,
+        demand: Option<PyDemand>,
         start: Option<&Bound<'_, PyAny>>,
         threads: Option<Count>,
     ) -> PyResult<Self> {
         let threads = threads.map(|Count(threads)| threads);
+        let demand = demand.map(|demand| demand.of(config.0.dims)).transpose()?;
         let start = start.map(Start::of).transpose()?;
         let plan = |caller: &Caller<'_, ()>| {
-            match start {
-                Some(Start { table, metadata: Some(metadata) }) => {
-                    return Optimizer::from_table_with(config.0, table, &metadata);
-                }
-                Some(Start { table, metadata: None }) => return Optimizer::from_table(config.0, table),
-                None => {}
-            }
-            Optimizer::new_observed(config.0, |_| match caller.wants_an_end() {
+            let observe = |_| match caller.wants_an_end() {
                 true => ControlFlow::Break(()),
                 false => ControlFlow::Continue(()),
-            })
+            };
+            let config = config.0.clone();
+            match (&demand, start) {
+                (None, None) => Optimizer::new_observed(config, observe),
+                (None, Some(Start { table, metadata: Some(metadata) })) => {
+                    Optimizer::from_table_with(config, table, &metadata)
+                }
+                (None, Some(Start { table, metadata: None })) => Optimizer::from_table(config, table),
+                (Some(demand), start) => {
+                    let mut optimizer = Optimizer::for_demand_observed(config, demand, observe)?;
+                    start.map_or(Ok(()), |start| optimizer.start_from(start.table))?;
+                    Ok(optimizer)
+                }
+            }
         };
         let (optimizer, exception) = watched(py, threads, plan, |_| Ok(()))?;
-        if let Some(exception) = exception {
+        if let Some(exception) = exception.or_else(|| raised(&config.0)) {
             return Err(exception);
         }
         Ok(Self { state: Mutex::new(State { optimizer: optimizer.python()?, report: None }), threads })

@@ -48,7 +48,8 @@ impl Until {
 
     /// Sweeps of the frame that an animation begins with, then slices, then sweeps.
     #[staticmethod]
-    #[pyo3(signature = (*, frame_sweeps = Number(0), slices = Number(0), sweeps = Number(0)))]
+    #[pyo3(signature = (*, frame_sweeps = Number(0), slices = Number(0), sweeps = Number(0)),
+        text_signature = "(*, frame_sweeps=0, slices=0, sweeps=0)")]
     fn work(frame_sweeps: Number, slices: Number, sweeps: Number) -> Self {
         let [frame_sweeps, slices, sweeps] = [frame_sweeps, slices, sweeps].map(|Number(number)| number);
         Self(fsot::Until::Work(Work { frame_sweeps, slices_per_class: slices, sweeps }))
@@ -58,7 +59,8 @@ impl Until {
     /// share `improvement`, in `[0, 1)`, from one window of `window_steps` steps to the next, and after
     /// `at_most` slices per pixel and frame at the latest.
     #[staticmethod]
-    #[pyo3(signature = (improvement = 0.01, *, window_steps = Number(64), at_most = Number(10_000)))]
+    #[pyo3(signature = (improvement = 0.01, *, window_steps = Number(64), at_most = Number(10_000)),
+        text_signature = "(improvement=0.01, *, window_steps=64, at_most=10000)")]
     fn converged(improvement: f64, window_steps: Number, at_most: Number) -> Self {
         let [window_steps, at_most] = [window_steps, at_most].map(|Number(number)| number);
         Self(fsot::Until::Converged { improvement, window_steps, at_most })

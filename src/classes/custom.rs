@@ -1,5 +1,7 @@
 //! Families of classes that the caller writes.
 
+use std::any::Any;
+
 use crate::named::{ByName, Named};
 use crate::table::extent::Extent;
 
@@ -7,7 +9,7 @@ use crate::table::extent::Extent;
 ///
 /// It is asked once for each of its members, when an objective is planned, and never during the optimisation:
 /// a filter may be anything that can be written down as a list of samples and weights. The lists are kept,
-/// eight bytes per entry.
+/// eight bytes per entry. [`CustomClasses::get`] gives it back as `&dyn Any`, so that who made it finds it again.
 ///
 /// ```
 /// use fsot::classes::{ClassFamily, ClassSamples, Classes};
@@ -37,7 +39,7 @@ use crate::table::extent::Extent;
 /// Optimizer::new(Config::point_set(64, 2, vec![term]))?.run(Until::SlicesPerClass(64))?;
 /// # Ok::<(), fsot::ConfigError>(())
 /// ```
-pub trait ClassFamily: std::fmt::Debug + Send + Sync {
+pub trait ClassFamily: Any + std::fmt::Debug + Send + Sync {
     /// Name for messages and for a serialised [`crate::Config`].
     fn name(&self) -> &str;
 

@@ -121,7 +121,11 @@ impl Schedule {
         }
     }
 
-    pub(crate) fn validate(&self) -> Result<(), RangeError> {
+    /// Refuses ends that are not from 1e-30 to 1e6.
+    ///
+    /// # Errors
+    /// The first number that lies outside its range.
+    pub fn validate(&self) -> Result<(), RangeError> {
         for (name, value) in ["the first step size", "the last step size"].into_iter().zip(self.ends()) {
             RangeError::check((LEAST..=MOST).contains(&value), name, value, "from 1e-30 to 1e6")?;
         }
@@ -175,7 +179,11 @@ impl Descent {
         }
     }
 
-    pub(crate) fn validate(&self) -> Result<(), RangeError> {
+    /// Refuses settings that no step could follow.
+    ///
+    /// # Errors
+    /// The first number that lies outside its range.
+    pub fn validate(&self) -> Result<(), RangeError> {
         // Closer to 1, a decay would be 1 in `f32`.
         let share = |name, value: f64| {
             RangeError::check((0.0..=MOST_DECAY).contains(&value), name, value, "from 0 to 0.999999")

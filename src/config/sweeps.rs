@@ -62,7 +62,11 @@ impl Sweeps {
         (self.rate.between([first, last.max(first / sweeps)]), self.softening)
     }
 
-    pub(crate) fn validate(&self) -> Result<(), RangeError> {
+    /// Refuses settings that no sweep could follow.
+    ///
+    /// # Errors
+    /// The first number that lies outside its range.
+    pub fn validate(&self) -> Result<(), RangeError> {
         self.rate.validate()?;
         self.polish.validate()?;
         let softening = self.softening;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::classes::{Classes, FilterForm};
-use crate::error::RangeError;
+use crate::error::{GroupError, RangeError, TermError};
 use crate::kernel::{Kernel, SpatialKernel, TemporalKernel};
 use crate::simd::LANES;
 use crate::table::extent::{Extent, MOST_DIMS};
@@ -197,6 +197,23 @@ impl Term {
         terms
     }
 
+    /// Refuses a term that fits no table.
+    ///
+    /// # Errors
+    /// A weight out of range, dimensions that are no group, a target of another number of dimensions.
+    pub fn validate(&self) -> Result<(), TermError> {
+        let is_weight = (1e-15..=1e15).contains(&self.weight);
+        RangeError::check(is_weight, "the weight of a term", self.weight, "from 1e-15 to 1e15")?;
+        // Whether the table has them is found out when there is one.
+        GroupError::check(&self.dims, usize::MAX)?;
+        match self.target.dims() {
+            Some(target) if target != self.dims.len() => {
+                Err(TermError::TargetDims { target, dims: self.dims.len() })
+            }
+            _ => Ok(()),
+        }
+    }
+
     fn uniform(classes: &Classes, role: Role, group: &DimensionGroup, share: f64) -> Self {
         Self {
             classes: classes.clone(),
@@ -276,7 +293,11 @@ impl Slicing {
         if dims == 1 { 1 } else { self.directions }
     }
 
-    pub(crate) fn validate(&self) -> Result<(), RangeError> {
+    /// Refuses settings by which no slice could be drawn.
+    ///
+    /// # Errors
+    /// The first number that lies outside its range.
+    pub fn validate(&self) -> Result<(), RangeError> {
         let Self { directions, axis_share, batch_slices } = *self;
         let is_good = (1..=LANES).contains(&directions);
         RangeError::check(is_good, "directions per subset", directions as f64, "from 1 to 16")?;

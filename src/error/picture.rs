@@ -90,6 +90,15 @@ pub enum PictureError {
         /// What it says of its colours.
         what: String,
     },
+    /// An array whose last axis holds no colours.
+    #[error(
+        "a picture of {given} channels: give 1 (grey), 2 (grey and alpha), 3 (red, green and blue) or 4 (the \
+         same and alpha)"
+    )]
+    ChannelCount {
+        /// Length of the last axis.
+        given: usize,
+    },
     /// The pixels of a file are much wider than high, or higher than wide.
     #[error(
         "the pixels of {} are {} times as wide as high: save it with square ones, or within 1/64 to 64",

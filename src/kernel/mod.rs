@@ -12,6 +12,7 @@ mod per_frame;
 mod spatial;
 mod taps;
 mod temporal;
+mod weights;
 
 use serde::{Deserialize, Serialize};
 
@@ -20,13 +21,15 @@ pub use self::spatial::{SpatialKernel, SpatialTap};
 pub use self::taps::Tap;
 use self::taps::{NEGLIGIBLE, drop_below, maximum, range, to_unit};
 pub use self::temporal::TemporalKernel;
+pub use self::weights::check_fit;
 pub use crate::error::KernelError;
 use crate::table::extent::Extent;
 
 /// A filter over pixels and frames: the product of a spatial and a temporal kernel.
 ///
 /// The other combination in use, *separate* (a spatial filter in every frame and a temporal filter at every
-/// pixel, Wolfe et al. 2022), is two kernels: [`Kernel::separate`].
+/// pixel, Wolfe et al. 2022), is two kernels: [`Kernel::separate`]. Filters of given weights are made by
+/// [`Kernel::from_weights`] and [`Kernel::from_frame_weights`].
 ///
 /// ```
 /// use fsot::kernel::{SpatialKernel, TemporalKernel};

@@ -136,6 +136,18 @@ impl Objective {
     /// # Errors
     /// As [`Objective::new`]; a demand for dimensions that the table does not have; a demand for nothing.
     pub fn for_demand(config: &Config, demand: &Demand) -> Result<Self, ConfigError> {
+        Self::for_demand_observed(config, demand, |_| ControlFlow::Continue(()))
+    }
+
+    /// The same, for whoever waits: see [`Objective::new_observed`].
+    ///
+    /// # Errors
+    /// As [`Objective::for_demand`]; [`ConfigError::Stopped`] if `observe` breaks off.
+    pub fn for_demand_observed(
+        config: &Config,
+        demand: &Demand,
+        mut observe: impl FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<Self, ConfigError> {
         let Config { extent, dims, .. } = *config;
         extent.validate(dims)?;
         for (group, dimensions) in demand.groups().iter().enumerate() {
@@ -158,8 +170,7 @@ impl Objective {
         if terms.is_empty() || folded.count() == 0 {
             return Err(ConfigError::NoDemand);
         }
-        let observe = &mut |_| ControlFlow::Continue(());
-        Self::planned(config, terms, Wanted::new(folded.pixels()), observe)
+        Self::planned(config, terms, Wanted::new(folded.pixels()), &mut observe)
     }
 
     /// Plans terms, given with their positions in the configuration, which may have others.

@@ -7,7 +7,7 @@ use crate::config::{Role, Slicing, Term};
 use crate::directions::Slicer;
 use crate::directions::banks::Banks;
 use crate::directions::cube_bank::Boundary;
-use crate::error::{ConfigError, GroupError, RangeError, TermError};
+use crate::error::{ConfigError, GroupError, TermError};
 use crate::table::domain::Domain;
 use crate::table::extent::Extent;
 use crate::targets::Target;
@@ -63,14 +63,8 @@ impl PlannedTerm {
         shared: Option<FilterFamily>,
     ) -> Result<Option<FilterFamily>, TermError> {
         let dims = domains.len();
-        let is_weight = (1e-15..=1e15).contains(&term.weight);
-        RangeError::check(is_weight, "the weight of a term", term.weight, "from 1e-15 to 1e15")?;
+        term.validate()?;
         GroupError::check(&term.dims, dims)?;
-        if let Some(target) = term.target.dims()
-            && target != term.dims.len()
-        {
-            return Err(TermError::TargetDims { target, dims: term.dims.len() });
-        }
         if term.target != Target::UniformCube
             && let Some(&dimension) = term.dims.iter().find(|&&dim| domains[dim] == Domain::Torus)
         {

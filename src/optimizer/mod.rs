@@ -133,8 +133,20 @@ impl Optimizer {
     /// # Errors
     /// Whatever [`Objective::for_demand`] refuses, and descent parameters outside their ranges.
     pub fn for_demand(config: Config, demand: &Demand) -> Result<Self, ConfigError> {
+        Self::for_demand_observed(config, demand, |_| ControlFlow::Continue(()))
+    }
+
+    /// The same, telling the share of the planning that is done: see [`Objective::new_observed`].
+    ///
+    /// # Errors
+    /// As [`Optimizer::for_demand`]; [`ConfigError::Stopped`] if `observe` breaks off.
+    pub fn for_demand_observed(
+        config: Config,
+        demand: &Demand,
+        observe: impl FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<Self, ConfigError> {
         check_room(&config)?;
-        let objective = Objective::for_demand(&config, demand)?;
+        let objective = Objective::for_demand_observed(&config, demand, observe)?;
         let partial = !objective.is_whole(&config);
         Ok(Self { partial, ..Self::with(config, objective)? })
     }

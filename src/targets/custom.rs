@@ -1,12 +1,14 @@
 //! Targets that the caller writes.
 
+use std::any::Any;
+
 use crate::laws::Projected;
 use crate::named::{ByName, Named};
 
 /// A target measure of the caller's own, on the unit cube.
 ///
 /// It is asked for the laws of a fixed set of directions when an objective is planned, and never during the
-/// optimisation.
+/// optimisation. [`CustomTarget::get`] gives it back as `&dyn Any`, so that who made it finds it again.
 ///
 /// ```
 /// use fsot::targets::{Measure, Projected, Target};
@@ -31,7 +33,7 @@ use crate::named::{ByName, Named};
 /// let target = Target::custom(Diagonal);
 /// assert!((target.project(&[0.6, 0.8]).mean() - 0.7).abs() < 1e-12);
 /// ```
-pub trait Measure: std::fmt::Debug + Send + Sync {
+pub trait Measure: Any + std::fmt::Debug + Send + Sync {
     /// Name for messages and for a serialised [`crate::Config`].
     fn name(&self) -> &str;
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::density::Density;
 use super::density_sum::DensitySum;
-use super::picture::{Picture, PictureOptions, Raster, read};
+use super::picture::{NAME, Picture, PictureOptions, Pixels, Raster, read};
 use crate::error::{PictureError, TargetError};
 
 /// Density of each ink of a picture: cyan, magenta, yellow and black, 0 to 1 per pixel.
@@ -52,6 +52,15 @@ impl Inks {
         let path = path.as_ref();
         Self::of_raster(read(path, options, separated)?)
             .map_err(|problem| PictureError::Density { path: path.into(), problem })
+    }
+
+    /// The same of pixels in memory.
+    ///
+    /// # Errors
+    /// Whatever [`Picture::from_pixels`] and [`Inks::from_picture`] refuse.
+    pub fn from_pixels(pixels: Pixels<'_>, options: &PictureOptions) -> Result<Self, PictureError> {
+        Self::of_raster(pixels.read(options, separated)?)
+            .map_err(|problem| PictureError::Density { path: NAME.into(), problem })
     }
 
     fn of_raster(raster: Raster<4>) -> Result<Self, TargetError> {

@@ -36,7 +36,7 @@ pub use density_sum::DensitySum;
 #[cfg(feature = "image")]
 pub use {
     inks::Inks,
-    picture::{Picture, PictureOptions, Transfer},
+    picture::{Picture, PictureOptions, Pixels, Transfer},
     tone::Tone,
 };
 

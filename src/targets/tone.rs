@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::density::Density;
-use super::picture::{Picture, PictureOptions, Raster, read};
+use super::picture::{NAME, Picture, PictureOptions, Pixels, Raster, read};
 use crate::error::{PictureError, TargetError};
 
 /// Which part of a picture draws points.
@@ -75,6 +75,19 @@ impl Density {
         let path = path.as_ref();
         let raster = read(path, options, |pixel| tone.density(pixel))?;
         Self::of_raster(raster).map_err(|problem| PictureError::Density { path: path.into(), problem })
+    }
+
+    /// The same of pixels in memory.
+    ///
+    /// # Errors
+    /// Whatever [`Picture::from_pixels`] and [`Density::from_picture`] refuse.
+    pub fn from_pixels(
+        pixels: Pixels<'_>,
+        tone: Tone,
+        options: &PictureOptions,
+    ) -> Result<Self, PictureError> {
+        let raster = pixels.read(options, |pixel| tone.density(pixel))?;
+        Self::of_raster(raster).map_err(|problem| PictureError::Density { path: NAME.into(), problem })
     }
 
     fn of_raster(raster: Raster<1>) -> Result<Self, TargetError> {

@@ -16,6 +16,7 @@ use super::making::{Figures, make, tell};
 use super::page::{sheet, sheet_size};
 use super::picture::{Reading, refusal};
 use super::set::PointSet;
+use super::usual;
 use crate::console;
 use crate::interrupt::Interrupt;
 use crate::log::Log;
@@ -40,10 +41,10 @@ pub struct Arguments {
     #[arg(long, default_value = "data/garden.png")]
     picture: PathBuf,
     /// Points in all.
-    #[arg(long, default_value_t = 24576, value_parser = crate::flags::count())]
+    #[arg(long, default_value_t = usual::COLOR_COUNT, value_parser = crate::flags::count())]
     count: usize,
     /// Slices per set of inks.
-    #[arg(long, default_value_t = 1000)]
+    #[arg(long, default_value_t = usual::COLOR_SLICES)]
     slices: u64,
     /// Names every random number: the same seed gives the same bits.
     #[arg(long, default_value_t = 0)]
@@ -56,8 +57,10 @@ pub struct Arguments {
     shared: Shared,
 }
 
-const NAMES: [&str; 4] = ["cyan", "magenta", "yellow", "black"];
-const INKS: [[u8; 3]; 4] = [[0, 165, 220], [225, 20, 130], [250, 225, 0], [25, 25, 30]];
+/// Of the labels.
+pub const NAMES: [&str; 4] = ["cyan", "magenta", "yellow", "black"];
+/// How they are drawn.
+pub const INKS: [[u8; 3]; 4] = [[0, 165, 220], [225, 20, 130], [250, 225, 0], [25, 25, 30]];
 
 /// Makes it.
 pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {

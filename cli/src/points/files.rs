@@ -1,5 +1,6 @@
 //! Where a point set goes: a picture, coordinates, and how they were made.
 
+use std::io;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -52,7 +53,6 @@ pub struct Record {
 
 /// Kind and version of the file; the number grows when an old reader would misunderstand a new file.
 const FORMAT: &str = "fsot point set 1";
-const COLUMNS: [&str; 3] = ["x", "y", "label"];
 
 impl Files {
     /// Refuses, before the work, what could not be written after it.
@@ -81,7 +81,7 @@ impl Files {
 
 impl Places {
     fn record(&self) -> Option<PathBuf> {
-        self.points.as_ref().map(|path| path.with_extension("points.json"))
+        self.points.as_deref().map(record_path)
     }
 
     /// Where the log goes.
@@ -99,18 +99,8 @@ impl Places {
         if let (Some(path), Some(beside)) = (&self.points, self.record()) {
             let coordinates = set.file(path)?;
             output::write("--points", path, |out| out.write_all(&coordinates))?;
-            let text = Written {
-                format: FORMAT,
-                crate_version: env!("CARGO_PKG_VERSION"),
-                columns: COLUMNS,
-                points: set.count(),
-                sha256: Sha256::digest(&coordinates).iter().map(|byte| format!("{byte:02x}")).collect(),
-                record,
-            };
-            output::write("--points", &beside, |out| {
-                serde_json::to_writer_pretty(&mut *out, &text)?;
-                writeln!(out)
-            })?;
+            let text = record_text(set, &coordinates, record)?;
+            output::write("--points", &beside, |out| out.write_all(&text))?;
         }
         match &self.picture {
             Some(path) => draw().save(path),
@@ -125,14 +115,37 @@ impl Places {
     }
 }
 
+/// The text of the file beside a file of coordinates, of which the bytes are given: how they were made.
+///
+/// # Errors
+/// A record that JSON doesn't hold.
+pub fn record_text(set: &PointSet, coordinates: &[u8], record: &impl Serialize) -> io::Result<Vec<u8>> {
+    let written = Written {
+        format: FORMAT,
+        crate_version: env!("CARGO_PKG_VERSION"),
+        columns: set.columns(),
+        points: set.count(),
+        sha256: Sha256::digest(coordinates).iter().map(|byte| format!("{byte:02x}")).collect(),
+        record,
+    };
+    let mut text = serde_json::to_vec_pretty(&written)?;
+    text.push(b'\n');
+    Ok(text)
+}
+
+/// Where it lies.
+pub fn record_path(coordinates: &Path) -> PathBuf {
+    coordinates.with_extension("points.json")
+}
+
 #[derive(Serialize)]
-struct Written<'a> {
+struct Written<'a, R> {
     format: &'static str,
     crate_version: &'static str,
-    columns: [&'static str; 3],
+    columns: Vec<String>,
     points: usize,
     /// Of the file of coordinates, so that a record that belongs to another is found out.
     sha256: String,
     #[serde(flatten)]
-    record: &'a Record,
+    record: &'a R,
 }

@@ -29,6 +29,7 @@ pub struct Made {
 pub struct Work {
     /// Time before the first step.
     pub planning_seconds: f64,
+    /// The steps, and how they ended.
     #[serde(flatten)]
     pub run: RunRecord,
 }

@@ -11,9 +11,34 @@ mod set;
 mod stipple;
 mod two_class;
 
+pub use color_stipple::{INKS as PRINTERS_INKS, NAMES as PRINTERS_NAMES};
+pub use files::{record_path, record_text};
+pub use making::Work;
+pub use page::{BLACK, sheet, sheet_size, squares};
+pub use set::PointSet;
+pub use two_class::INKS as CLASS_INKS;
+
 use clap::{Args, Subcommand};
 
 use crate::{Ended, Failure};
+
+/// How much work is done if nothing is said of it.
+pub mod usual {
+    /// Slices per class of a set of classes.
+    pub const CLASSES_SLICES: u64 = 4000;
+    /// Points of a sequence.
+    pub const PROGRESSIVE_COUNT: usize = 4096;
+    /// Slices per prefix of a sequence.
+    pub const PROGRESSIVE_SLICES: u64 = 8000;
+    /// Points of a stippling.
+    pub const STIPPLE_COUNT: usize = 8192;
+    /// Slices of a stippling.
+    pub const STIPPLE_SLICES: u64 = 16000;
+    /// Points of a stippling in colour.
+    pub const COLOR_COUNT: usize = 24576;
+    /// Slices per set of inks.
+    pub const COLOR_SLICES: u64 = 1000;
+}
 
 const EXAMPLES: &str = "\
 Examples:

@@ -13,6 +13,7 @@ use super::files::{Files, Record};
 use super::making::{Figures, Work, make, tell};
 use super::page::{BLACK, squares};
 use super::set::PointSet;
+use super::usual;
 use crate::interrupt::Interrupt;
 use crate::log::Log;
 use crate::progress::Progress;
@@ -34,13 +35,13 @@ Exit codes: 0 done, 1 refused or failed, 2 bad command line, 3 ended early by a 
 #[command(after_help = EXAMPLES, allow_negative_numbers = true)]
 pub struct Arguments {
     /// Points of the sequence.
-    #[arg(long, default_value_t = 4096, value_parser = crate::flags::count())]
+    #[arg(long, default_value_t = usual::PROGRESSIVE_COUNT, value_parser = crate::flags::count())]
     count: usize,
     /// Which prefixes are classes.
     #[arg(long, value_enum, default_value_t = Prefixes::Powers)]
     prefixes: Prefixes,
     /// Slices per class.
-    #[arg(long, default_value_t = 8000)]
+    #[arg(long, default_value_t = usual::PROGRESSIVE_SLICES)]
     slices: u64,
     /// Sequences to make and to average over: those of the seeds 0, 1, …
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
@@ -75,7 +76,7 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
     let progress = Progress::new(shared);
     let mut work = Work::default();
     let mut sequences: Vec<SampleTable> = Vec::new();
-    let mut set = PointSet::default();
+    let mut set = PointSet::empty(2);
     let mut log = None;
     for seed in 0..*seeds {
         let lengths = match prefixes {

@@ -14,6 +14,7 @@ use super::making::{Figures, make, tell};
 use super::page::{BLACK, LONGER_SIDE, sheet, sheet_size};
 use super::picture::{Reading, refusal};
 use super::set::PointSet;
+use super::usual;
 use crate::interrupt::Interrupt;
 use crate::log::Log;
 use crate::progress::Progress;
@@ -39,13 +40,13 @@ pub struct Arguments {
     #[arg(long, default_value = "data/lantern.png")]
     picture: PathBuf,
     /// Points.
-    #[arg(long, default_value_t = 8192, value_parser = crate::flags::count())]
+    #[arg(long, default_value_t = usual::STIPPLE_COUNT, value_parser = crate::flags::count())]
     count: usize,
     /// Bright instead of dark.
     #[arg(long)]
     bright: bool,
     /// Slices.
-    #[arg(long, default_value_t = 16000)]
+    #[arg(long, default_value_t = usual::STIPPLE_SLICES)]
     slices: u64,
     /// Names every random number: the same seed gives the same bits.
     #[arg(long, default_value_t = 0)]

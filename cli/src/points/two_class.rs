@@ -16,6 +16,7 @@ use super::files::{Files, Record};
 use super::making::{Figures, make, tell};
 use super::page::squares;
 use super::set::PointSet;
+use super::usual;
 use crate::console;
 use crate::interrupt::Interrupt;
 use crate::log::Log;
@@ -45,7 +46,7 @@ pub struct Arguments {
     #[arg(long)]
     every: bool,
     /// Slices per class.
-    #[arg(long, default_value_t = 4000)]
+    #[arg(long, default_value_t = usual::CLASSES_SLICES)]
     slices: u64,
     /// Names every random number: the same seed gives the same bits.
     #[arg(long, default_value_t = 0)]
@@ -60,7 +61,8 @@ pub struct Arguments {
 }
 
 const SIDE: usize = 420;
-const INKS: [[u8; 3]; 7] = [
+/// Of the classes, over and over.
+pub const INKS: [[u8; 3]; 7] = [
     [205, 55, 45],
     [35, 95, 190],
     [40, 140, 70],

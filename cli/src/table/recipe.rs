@@ -5,7 +5,7 @@ use std::path::Path;
 use clap::ValueEnum;
 use fsot::classes::{Classes, FilterForm};
 use fsot::config::{Descent, DimensionGroup, Schedule, Slicing, Sweeps, Term, Work};
-use fsot::kernel::{SpatialKernel, SpatialTap};
+use fsot::kernel::SpatialKernel;
 use fsot::{Config, Extent, Kernel, Until};
 use serde::Deserialize;
 
@@ -327,12 +327,12 @@ impl Recipe {
         let temporal = temporal::or_default(given, extent.frames);
         let of = |stencil: &Stencil, name: &str| -> Result<_, Failure> {
             let failed = |problem| format!("{name} {problem} (--kernel)");
-            let (spatial, over_time) = stencil.kernel(extent).map_err(failed)?;
-            if over_time.is_some() && given.is_some() {
+            let kernel = stencil.kernel(extent).map_err(failed)?;
+            if stencil.over_time && given.is_some() {
                 let problem = "has weights for each frame already: leave out the temporal kernel";
                 return Err(format!("{name} {problem} (--temporal)").into());
             }
-            Ok(Kernel::product(spatial, over_time.unwrap_or(temporal.clone())))
+            Ok(if stencil.over_time { kernel } else { kernel.with_temporal(temporal.clone()) })
         };
         let mut kernel = match &self.kernel {
             None => {
@@ -358,16 +358,6 @@ impl Recipe {
 
 /// Refuses weights that would come in again from the other side of the tile.
 fn fits(kernel: &SpatialKernel, extent: &Extent) -> Result<(), Failure> {
-    let lists: &[Vec<SpatialTap>] = match kernel {
-        SpatialKernel::Taps(taps) => std::slice::from_ref(taps),
-        SpatialKernel::PerFrame(frames) => frames,
-        _ => return Ok(()),
-    };
-    let span = |offset: fn(&SpatialTap) -> i32| {
-        let offsets = || lists.iter().flatten().map(offset);
-        let (first, last) = (offsets().min().unwrap_or(0), offsets().max().unwrap_or(0));
-        (i64::from(last) - i64::from(first) + 1) as usize
-    };
-    let (rows, columns) = (span(|tap| tap.dy), span(|tap| tap.dx));
-    stencil::fits(rows, columns, extent).map_err(|problem| format!("the kernel {problem} (--kernel)").into())
+    let Some(span) = kernel.span() else { return Ok(()) };
+    stencil::fits(span, extent).map_err(|problem| format!("the kernel {problem} (--kernel)").into())
 }

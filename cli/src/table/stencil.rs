@@ -1,14 +1,12 @@
 //! Kernels of given weights: arrays of `.npy` files and rows of `.csv` files.
 
-use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::Path;
 
-use fsot::Extent;
-use fsot::config::Short;
-use fsot::kernel::{SpatialKernel, SpatialTap, TemporalKernel};
-use ndarray::ArrayD;
+use fsot::kernel::{KernelError, check_fit};
+use fsot::{Extent, Kernel};
+use ndarray::{ArrayD, ArrayView3, Axis};
 use ndarray_npy::{ReadNpyError, ReadNpyExt, ReadableElement};
 
 use crate::output::has_ending;
@@ -120,75 +118,46 @@ impl Stencil {
     }
 
     fn checked(self) -> Result<Self, String> {
-        let [_, rows, columns] = self.shape;
-        if self.weights.is_empty() {
-            return Err("holds no weights: give at least one above 0".into());
-        }
-        let is_weight = |weight: &f64| weight.is_finite() && *weight >= 0.0;
-        if let Some(at) = self.weights.iter().position(|weight| !is_weight(weight)) {
-            let (weight, x, y, frame) =
-                (Short::from(self.weights[at]), at % columns, at / columns % rows, at / columns / rows);
-            let frame = if self.over_time { format!("frame {frame}, ") } else { String::new() };
-            return Err(format!(
-                "has weight {weight} at [{frame}y {y}, x {x}]: \
-                 weights must be finite and at least 0"
-            ));
-        }
-        let sum: f64 = self.weights.iter().sum();
-        if !(sum > 0.0 && sum.is_finite()) {
-            return Err(format!(
-                "has weights whose sum is {}: give a sum that is above 0 and finite",
-                Short::from(sum)
-            ));
-        }
+        self.whole().map_err(without_name)?;
         Ok(self)
     }
 
-    /// The kernel in space, and that in time if there are frames.
+    /// The kernel, which has weights in time if there are frames.
     ///
     /// # Errors
     /// A kernel that is larger than the tile: what lies beyond its edges would come in again from the other
     /// side. Frames may be more than the animation has, which wraps.
-    pub fn kernel(&self, extent: &Extent) -> Result<(SpatialKernel, Option<TemporalKernel>), String> {
+    pub fn kernel(&self, extent: &Extent) -> Result<Kernel, String> {
         let [_, rows, columns] = self.shape;
-        fits(rows, columns, extent)?;
-        let first = |size: usize| (size as i32 - 1) / 2;
-        let offset =
-            |at: usize| ((at / columns) as i32 - first(rows), (at % columns) as i32 - first(columns));
-        let taps = |weights: &mut dyn Iterator<Item = f64>| -> Vec<SpatialTap> {
-            let all = weights.enumerate().map(|(at, weight)| (offset(at), weight));
-            let some = all.filter(|(_, weight)| *weight > 0.0);
-            some.map(|((dy, dx), weight)| SpatialTap { dy, dx, weight }).collect()
-        };
-        let frames: Vec<&[f64]> = self.weights.chunks_exact(rows * columns).collect();
-        if !self.over_time {
-            return Ok((SpatialKernel::Taps(taps(&mut frames[0].iter().copied())), None));
+        fits([rows, columns], extent)?;
+        self.whole().map_err(without_name)
+    }
+
+    fn whole(&self) -> Result<Kernel, KernelError> {
+        let weights = ArrayView3::from_shape(self.shape, &self.weights);
+        let weights = weights.expect("as many weights as the axes say");
+        match self.over_time {
+            true => Kernel::from_frame_weights(weights),
+            false => Kernel::from_weights(weights.index_axis_move(Axis(0), 0)),
         }
-        let sums: Vec<f64> = frames.iter().map(|weights| weights.iter().sum()).collect();
-        // What stands for a frame that weighs nothing, where it is looked at alone.
-        let mut together = BTreeMap::new();
-        for (at, weight) in frames.iter().flat_map(|weights| weights.iter().enumerate()) {
-            *together.entry(at).or_insert(0.0) += weight;
-        }
-        let in_space = frames.iter().zip(&sums).map(|(weights, &sum)| match sum {
-            0.0 => taps(&mut together.values().copied()),
-            _ => taps(&mut weights.iter().map(|weight| weight / sum)),
-        });
-        let in_space = in_space.collect();
-        Ok((SpatialKernel::PerFrame(in_space), Some(TemporalKernel::Taps(sums))))
     }
 }
 
 /// Refuses more weights than the tile has pixels.
-pub(super) fn fits(rows: usize, columns: usize, extent: &Extent) -> Result<(), String> {
-    let Extent { height, width, .. } = *extent;
-    if rows <= height && columns <= width {
-        return Ok(());
-    }
-    Err(format!(
-        "has {columns} × {rows} weights, more than the {width} × {height} pixels of a frame: \
-         give a smaller kernel, or more --width and --height"
-    ))
+pub(super) fn fits(size: [usize; 2], extent: &Extent) -> Result<(), String> {
+    check_fit(size, extent).map_err(|error| match error {
+        KernelError::Oversized { rows, columns, height, width } => format!(
+            "has {columns} × {rows} weights, more than the {width} × {height} pixels of a frame: \
+             give a smaller kernel, or more --width and --height"
+        ),
+        other => without_name(other),
+    })
+}
+
+/// What stands against it, without the name that it has in the library: here it has one of its own.
+fn without_name(error: KernelError) -> String {
+    let words = error.to_string();
+    words.strip_prefix("the kernel ").unwrap_or(&words).into()
 }
 
 /// The array, if its numbers are of this type.

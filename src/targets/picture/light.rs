@@ -20,11 +20,18 @@ impl Light {
         Self { curves: [Box::new(curve), Box::new(curve), Box::new(curve)], matrix }
     }
 
+    /// Of numbers that say nothing of themselves.
+    pub fn of_levels(transfer: Transfer) -> Self {
+        match transfer {
+            Transfer::Linear => Self::new(|value| value, None),
+            Transfer::Srgb | Transfer::FromFile => Self::new(transfer::srgb, None),
+        }
+    }
+
     /// What a PNG file says, or is said of it; what cannot be read, in words.
     pub fn of_png(info: &Info, transfer: Transfer) -> Result<Self, String> {
         match transfer {
-            Transfer::Srgb => return Ok(Self::new(transfer::srgb, None)),
-            Transfer::Linear => return Ok(Self::new(|value| value, None)),
+            Transfer::Srgb | Transfer::Linear => return Ok(Self::of_levels(transfer)),
             Transfer::FromFile => {}
         }
         // 2 is "unspecified".

@@ -5,8 +5,10 @@ mod exif;
 mod exr;
 mod icc;
 mod layers;
+mod levels;
 mod light;
 mod options;
+mod pixels;
 mod png;
 mod primaries;
 mod transfer;
@@ -17,6 +19,8 @@ use std::path::Path;
 
 pub(super) use canvas::Raster;
 pub use options::{PictureOptions, Transfer};
+pub(super) use pixels::NAME;
+pub use pixels::Pixels;
 
 use super::density::{Density, with_room};
 use crate::error::{PictureError, TargetError};
@@ -83,7 +87,20 @@ impl Picture {
     /// Those of [`Picture::open`], with the limit of the options, and no layer of the name.
     pub fn open_with(path: impl AsRef<Path>, options: &PictureOptions) -> Result<Self, PictureError> {
         let path = path.as_ref();
-        let Raster { size: [width, height], values: [red, green, blue, alpha] } = read(path, options, Ok)?;
+        Self::of_raster(read(path, options, Ok)?, path)
+    }
+
+    /// The same of pixels in memory.
+    ///
+    /// # Errors
+    /// No pixels, a side beyond 65535, more pixels than the limit of the options, no or more than 4 channels,
+    /// no memory.
+    pub fn from_pixels(pixels: Pixels<'_>, options: &PictureOptions) -> Result<Self, PictureError> {
+        Self::of_raster(pixels.read(options, Ok)?, Path::new(NAME))
+    }
+
+    fn of_raster(raster: Raster<4>, path: &Path) -> Result<Self, PictureError> {
+        let Raster { size: [width, height], values: [red, green, blue, alpha] } = raster;
         let mut pixels = Vec::new();
         canvas::reserve(path, &mut pixels, width * height)?;
         pixels.extend((0..width * height).map(|at| [red[at], green[at], blue[at], alpha[at]]));

@@ -7,6 +7,7 @@ use png::{BitDepth, ColorType, Decoder, DecodingError, Info, Limits, Reader, Tra
 
 use super::canvas::{Canvas, Raster, check_size, reserve};
 use super::exif::Orientation;
+use super::levels::Levels;
 use super::light::Light;
 use super::options::PictureOptions;
 use crate::error::PictureError;
@@ -89,32 +90,17 @@ fn orientation(reader: &mut Reader<impl BufRead + Seek>) -> Orientation {
 
 /// From the bytes of a row to pixels.
 struct Samples<'a> {
-    light: &'a Light,
-    color: ColorType,
+    levels: Levels<'a>,
     is_deep: bool,
     pixel_bytes: usize,
-    /// Light of each level of red, green and blue.
-    levels: [Vec<f32>; 3],
-    /// Share of the highest level.
-    shares: Vec<f32>,
 }
 
 impl<'a> Samples<'a> {
     fn new(light: &'a Light, color: ColorType, depth: BitDepth) -> Self {
         let is_deep = depth == BitDepth::Sixteen;
         let most = if is_deep { u16::MAX } else { u8::MAX.into() };
-        let unit = f32::from(most);
-        // Grey is multiplied and colours are divided, which differs in the last bit: so did the crate
-        // `image`, which read files before, and a seed promises its points.
-        let share = |sample: u16| match color.samples() < 3 {
-            true => f32::from(sample) * unit.recip(),
-            false => f32::from(sample) / unit,
-        };
-        let shares: Vec<f32> = (0..=most).map(share).collect();
-        let levels =
-            [0, 1, 2].map(|channel| shares.iter().map(|&share| (light.curves[channel])(share)).collect());
         let pixel_bytes = color.samples() * if is_deep { 2 } else { 1 };
-        Self { light, color, is_deep, pixel_bytes, levels, shares }
+        Self { levels: Levels::new(light, color.samples(), most), is_deep, pixel_bytes }
     }
 
     /// Adds pixels: red, green and blue, multiplied by alpha, and alpha.
@@ -123,22 +109,7 @@ impl<'a> Samples<'a> {
             true => usize::from(u16::from_be_bytes([bytes[2 * at], bytes[2 * at + 1]])),
             false => usize::from(bytes[at]),
         };
-        let [red, green, blue] = &self.levels;
-        let pixel = |bytes: &[u8]| {
-            let level = |at| level(bytes, at);
-            let grey = |at| [red, green, blue].map(|channel| channel[level(at)]);
-            let colors = || [red[level(0)], green[level(1)], blue[level(2)]];
-            match self.color {
-                ColorType::Grayscale | ColorType::Indexed => (grey(0), 1.0),
-                ColorType::GrayscaleAlpha => (grey(0), self.shares[level(1)]),
-                ColorType::Rgb => (colors(), 1.0),
-                ColorType::Rgba => (colors(), self.shares[level(3)]),
-            }
-        };
-        pixels.extend(bytes.chunks_exact(self.pixel_bytes).map(|bytes| {
-            let (colors, alpha) = pixel(bytes);
-            let [red, green, blue] = self.light.in_rec_709(colors).map(|light| light * alpha);
-            [red, green, blue, alpha]
-        }));
+        let pixel = |bytes: &[u8]| self.levels.pixel(|at| level(bytes, at));
+        pixels.extend(bytes.chunks_exact(self.pixel_bytes).map(pixel));
     }
 }
