@@ -46,6 +46,7 @@ lock, so that several threads can each make a table, and arrays are handed over 
 
 from ._compiled import __version__  # first, since it has words for who misses it
 from . import metrics
+from ._exchange import Exported, Imported, import_table
 from ._fsot import (
     BELOW_ONE,
     Checkpoint,
@@ -71,6 +72,8 @@ __all__ = [
     "Classes",
     "Config",
     "Demand",
+    "Exported",
+    "Imported",
     "Interrupted",
     "Kernel",
     "Objective",
@@ -83,6 +86,7 @@ __all__ = [
     "Term",
     "Until",
     "__version__",
+    "import_table",
     "metrics",
     "table",
 ]
