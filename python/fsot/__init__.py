@@ -64,6 +64,8 @@ from ._fsot import (
 )
 from ._make import table
 from ._optimizer import Interrupted, Optimizer
+from ._point_sets import classes, color_stippling, progressive, stippling
+from ._points import Points
 from ._table import Table
 
 __all__ = [
@@ -78,6 +80,7 @@ __all__ = [
     "Kernel",
     "Objective",
     "Optimizer",
+    "Points",
     "Report",
     "Slices",
     "Step",
@@ -86,7 +89,11 @@ __all__ = [
     "Term",
     "Until",
     "__version__",
+    "classes",
+    "color_stippling",
     "import_table",
     "metrics",
+    "progressive",
+    "stippling",
     "table",
 ]

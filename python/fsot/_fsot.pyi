@@ -20,7 +20,13 @@ __all__ = [
     "check_table",
     "command",
     "configure",
+    "draw_points",
     "load_table",
+    "plan_classes",
+    "plan_color_stippling",
+    "plan_progressive",
+    "plan_stippling",
+    "save_points",
     "save_table",
     "until",
 ]
@@ -58,13 +64,22 @@ class Until:
 @final
 class Kernel:
     __hash__: ClassVar[None]  # type: ignore[assignment]
+    def __new__(
+        cls, weights: ArrayLike, *, temporal: _Temporal | None = None, truncation: float = 1e-3
+    ) -> Self: ...
     @staticmethod
-    def gaussian(sigma: float = 2.1, *, temporal: _Temporal | None = None) -> Kernel: ...
+    def gaussian(
+        sigma: float = 2.1, *, temporal: _Temporal | None = None, truncation: float = 1e-3
+    ) -> Kernel: ...
     @staticmethod
-    def box_(size: int, *, temporal: _Temporal | None = None) -> Kernel: ...
+    def box_(size: int, *, temporal: _Temporal | None = None, truncation: float = 1e-3) -> Kernel: ...
     @staticmethod
-    def binomial(size: int, *, temporal: _Temporal | None = None) -> Kernel: ...
+    def binomial(size: int, *, temporal: _Temporal | None = None, truncation: float = 1e-3) -> Kernel: ...
+    @property
+    def truncation(self) -> float: ...
     def with_temporal(self, temporal: _Temporal) -> Kernel: ...
+    def with_truncation(self, truncation: float) -> Kernel: ...
+    def separate(self) -> list[Kernel]: ...
     def taps(self, width: int = 64, height: int = 64, frames: int = 1) -> NDArray[numpy.float64]: ...
     def to_dict(self) -> dict[str, Any]: ...
     @staticmethod
@@ -169,6 +184,7 @@ class Optimizer:
         callback: Callable[[Step], bool | None] | None,
         progress: Callable[[Step], None] | None,
     ) -> tuple[Report, BaseException | None]: ...
+    def _record(self) -> dict[str, Any]: ...
     def _table(self) -> tuple[NDArray[numpy.float32], dict[str, Any]]: ...
 
 def configure(
@@ -180,7 +196,7 @@ def configure(
     *,
     sigma: float | None,
     temporal: _Temporal | None,
-    kernel: Kernel | None,
+    kernel: Kernel | ArrayLike | None,
     groups: Sequence[_Group] | None,
     domain: _Domain | None,
     seed: int,
@@ -276,3 +292,44 @@ def measure_sliced_distance(
 def measure_density_match(
     samples: ArrayLike, density: ArrayLike, sigma: float, dims: Sequence[int], threads: int | None
 ) -> tuple[tuple[float, int], tuple[float, int, int, int, int, float]]: ...
+_Labels: TypeAlias = NDArray[numpy.uint32] | None
+_Picture: TypeAlias = ArrayLike | _Path
+_Plan: TypeAlias = tuple[Config, _Labels, int, float]
+
+def plan_classes(
+    counts: Sequence[int],
+    dims: int,
+    subsets: str | Sequence[Sequence[int]],
+    domain: _Domain | None,
+    seed: int,
+) -> _Plan: ...
+def plan_progressive(
+    count: int,
+    dims: int,
+    lengths: str | Sequence[int | tuple[int, float]],
+    domain: _Domain | None,
+    seed: int,
+) -> _Plan: ...
+def plan_stippling(
+    picture: _Picture,
+    count: int,
+    tone: str,
+    transfer: str | None,
+    layer: str | None,
+    most_pixels: int | None,
+    limit_pixels: int,
+    seed: int,
+    threads: int | None,
+) -> _Plan: ...
+def plan_color_stippling(
+    picture: _Picture,
+    count: int,
+    transfer: str | None,
+    layer: str | None,
+    most_pixels: int | None,
+    limit_pixels: int,
+    seed: int,
+    threads: int | None,
+) -> _Plan: ...
+def save_points(path: _Path, points: ArrayLike, labels: ArrayLike | None, metadata: dict[str, Any]) -> None: ...
+def draw_points(points: ArrayLike, labels: ArrayLike | None, kind: str, aspect: float) -> bytes: ...
