@@ -410,6 +410,23 @@ def test_slurm_gets_a_worker_on_each_core(toml, capsys):
     assert "memory" in capsys.readouterr().err
 
 
+def test_jobs_of_slurm_make_the_same_rows(toml, tmp_path, monkeypatch):
+    """A scheduler of jobs that knows two commands stands in for SLURM."""
+    pytest.importorskip("dask_jobqueue")
+    commands = tmp_path / "bin"
+    commands.mkdir()
+    # The script is gone as soon as it is submitted.
+    sbatch = 'cp "$1" "$1.kept"; setsid sh "$1.kept" > /dev/null 2>&1 < /dev/null & echo "Submitted batch job $!"'
+    for name, script in {"sbatch": sbatch, "scancel": 'kill -- "-$1"'}.items():
+        (commands / name).write_text(f"#!/bin/sh\n{script}\n")
+        (commands / name).chmod(0o755)
+    monkeypatch.setenv("PATH", str(commands), prepend=os.pathsep)
+    toml.write_text(GRID + '[slurm]\ncores = 1\nmemory = "1GB"\ninterface = "lo"\n')
+    assert study.main([str(toml), "--out", str(tmp_path / "slurm.csv"), "--no-plot", "--slurm"]) == 0
+    assert run(toml) == 0
+    assert facts(tmp_path / "slurm.csv") == facts(toml.with_suffix(".csv"))
+
+
 # Pictures.
 
 
