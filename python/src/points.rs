@@ -16,11 +16,12 @@ use pyo3::types::PyString;
 use serde_json::Value;
 
 use crate::arrays::{Numbers, to_numpy};
-use crate::config::{PyConfig, with_domain};
+use crate::config::PyConfig;
 use crate::counts::{Count, Number};
 use crate::errors::{OrPython, refused};
 use crate::json;
 use crate::picture::{Picture, Reading};
+use crate::settings::with_domain;
 use crate::work::detached;
 
 type Labels<'py> = Option<Bound<'py, PyArray1<u32>>>;
