@@ -18,6 +18,10 @@ What there is
     A table in one call, and what it is: array, metadata, files, figures, pictures.
 `metrics`
     What tables, arrays and points are worth, as ratios to white noise: filtered error, bias, spectra.
+`import_table`, `Imported`, `Exported`
+    Tables of other people's files; what was read, and what `Table.export` has written.
+`classes`, `progressive`, `stippling`, `color_stippling`, `Points`
+    Point sets: uniform alone and together, at every beginning, or as dense as a picture.
 `Config`, `Kernel`
     All that determines a table but for the length of the run; a filter over pixels and frames.
 `Optimizer`, `Until`, `Step`, `Report`
@@ -30,8 +34,8 @@ What there is
 `Term`, `Classes`, `Target`
     What an objective is a sum of: who is filtered together, and what their samples shall be like.
 `Objective`, `Slices`
-    Value and gradient of the filtered sliced distance, for optimisers of your own. `fsot.torch` and `fsot.jax`
-    make a differentiable loss of it.
+    Value and gradient of the filtered sliced distance, for optimisers of your own. `fsot.torch` and
+    `fsot.jax` make a differentiable loss of it.
 `BELOW_ONE`
     The greatest number of a table.
 
@@ -39,9 +43,9 @@ The command ``fsot``, also ``python -m fsot``, makes, measures, draws and export
 
 What it promises
 ----------------
-The same seed gives the same bits on any number of threads. Numbers lie in ``[0, 1)``. Errors are `ValueError`,
-`TypeError` and `OSError`, each with a sentence that ends in what to do. Work runs without the interpreter's
-lock, so that several threads can each make a table, and arrays are handed over without a copy.
+The same seed gives the same bits on any number of threads. Numbers lie in ``[0, 1)``. Errors are
+`ValueError`, `TypeError` and `OSError`, each with a sentence that ends in what to do. Work runs without the
+interpreter's lock, so that several threads can each make a table, and arrays are handed over without a copy.
 """
 
 from ._compiled import __version__  # first, since it has words for who misses it
