@@ -1,7 +1,8 @@
 """A small network learns to turn white noise into a table whose error is blue noise.
 
-It is a convolution over pixels that wraps, trained through the filtered sliced loss on new white noise in every
-step, so that it cannot remember a table: it is judged on noise that it has not seen, and on a larger table.
+It is a convolution over pixels that wraps, trained through the filtered sliced loss on new white noise in
+each step, so that it cannot remember a table: it is judged on noise that it has not seen, and on a larger
+table.
 
     python train_network.py --seconds 100 --out network.npy
 """
@@ -11,11 +12,11 @@ from __future__ import annotations
 import argparse
 import time
 
-import numpy
 import torch
 from torch import nn
 
 import fsot
+import fsot.metrics
 import fsot.torch
 
 
@@ -60,38 +61,26 @@ def train(network: Network, size: int, seconds: float, seed: int, batch: int = 2
         noise = torch.rand(batch, 2, size, size, generator=generator)
         points = points_of(network(noise))
         slices = objective.draw(seed, step)
-        loss = sum(fsot.torch.filtered_sliced_loss(one, objective, slices) for one in points) / batch
+        losses = [fsot.torch.filtered_sliced_loss(one, objective, slices) for one in points]
         adam.zero_grad()
-        loss.backward()
+        torch.autograd.backward(torch.stack(losses).mean())
         adam.step()
         step += 1
     return step
 
 
-def filtered_error(objective: fsot.Objective, points: numpy.ndarray) -> float:
-    """Squared error of edges after the filter: all of them at once, in closed form."""
-    return objective.cramer(points)[0]
-
-
-def judge(network: Network, size: int, seed: int, seconds: float) -> dict[str, float]:
-    """Filtered errors, of white noise, of the network, and of fsot, and how far noise is moved."""
-    config = fsot.Config(size, size, seed=seed)
-    objective = fsot.Objective(config)
+def judge(network: Network, size: int, seed: int, seconds: float) -> dict[str, fsot.Table]:
+    """Tables of noise that the network has not seen, of the network, and of fsot."""
     noise = torch.rand(1, 2, size, size, generator=torch.Generator().manual_seed(2**40 + seed))
     with torch.no_grad():
-        made = points_of(network(noise))
-    optimizer = fsot.Optimizer(config)
-    optimizer.run(fsot.Until.seconds(seconds), progress=False)
-    before, after = filtered_error(objective, points_of(noise).numpy()), filtered_error(objective, made.numpy())
-    return {
-        "network": after / before,
-        "fsot": filtered_error(objective, optimizer.points) / before,
-        "moved": float((made - points_of(noise)).square().mean().sqrt()),
-    }
+        made = network(noise)
+    white_noise, of_network = (fsot.Table(points_of(one).numpy()[:, :, :, None, :]) for one in (noise, made))
+    of_fsot = fsot.table(size, size, seed=seed, seconds=seconds, progress=False)
+    return {"white noise": white_noise, "network": of_network, "fsot": of_fsot}
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--size", type=int, default=32, help="pixels of a side, in training")
     parser.add_argument("--seconds", type=float, default=100, help="of training")
     parser.add_argument("--seed", type=int, default=0)
@@ -104,18 +93,17 @@ def main() -> None:
     network = Network(dims=2)
     steps = train(network, arguments.size, arguments.seconds, arguments.seed)
     print(f"{steps} steps, {sum(weights.numel() for weights in network.parameters())} weights")
-    print("filtered squared error of edges, of white noise's:")
+    integrands = fsot.metrics.Integrands.random(2, seed=2**40)
+    print(f"{'of white noise:':24} filtered error  one pixel   bias")
     for size in (arguments.size, 2 * arguments.size):
-        found = judge(network, size, arguments.seed, min(1.0, arguments.seconds))
-        print(
-            f"{size} x {size}, new noise: network {found['network']:.3f}, fsot in a second {found['fsot']:.3f}; "
-            f"a number moved by {found['moved']:.3f}"
-        )
-    if arguments.out:
-        noise = torch.rand(1, 2, arguments.size, arguments.size)
-        with torch.no_grad():
-            made = points_of(network(noise)).numpy()
-        fsot.Table(made[:, :, :, None, :]).save(arguments.out)
+        tables = judge(network, size, arguments.seed, min(1.0, arguments.seconds))
+        for name, table in tables.items():
+            error = fsot.metrics.filtered_error(table, integrands=integrands)
+            bias = fsot.metrics.bias(table, integrands=integrands).table.mean
+            figures = f"{error.spatial.mean:14.3f} {error.unfiltered.mean:10.3f} {bias:6.3f}"
+            print(f"{size} x {size}, {name:14} {figures}")
+        if arguments.out and size == arguments.size:
+            tables["network"].save(arguments.out)
 
 
 if __name__ == "__main__":

@@ -64,6 +64,8 @@ def table(
     domain : {"interval", "torus"} or list of these, optional
         ``"torus"`` where numbers will be shifted modulo 1, in all dimensions or in each. Intervals by
         default.
+    demand : Demand, optional
+        The part of the table that the renderer reads in earnest; all by default.
     seed : int
         Of all random numbers, 0 to 2**64 - 1. The same arguments make the same bits, on any number of
         threads.

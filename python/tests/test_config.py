@@ -8,6 +8,7 @@ import pytest
 
 import fsot
 
+CLOUD = fsot.Target.cloud([[0.5], [0.25]])
 LATTICE = fsot.Classes.lattice(fsot.Kernel.gaussian(1.2))
 
 
@@ -46,7 +47,7 @@ CONFIGS = {
         [
             fsot.Term(LATTICE, dims=[1, 0]),
             fsot.Term(fsot.Classes.labelled(range(16), [[1, 2], [3]]), dims=1, weight=2, role="balance"),
-            fsot.Term(fsot.Classes.ramps(numpy.linspace(0, 1, 16)), fsot.Target.cloud([[0.5], [0.25]]), dims=0),
+            fsot.Term(fsot.Classes.ramps(numpy.linspace(0, 1, 16)), CLOUD, dims=0),
             fsot.Term(fsot.Classes.prefixes(), fsot.Target.density(numpy.eye(3)), dims=[0, 1]),
         ]
     ),
@@ -121,7 +122,8 @@ class TestOwn:
         config = own_config()
         optimizer = fsot.Optimizer(config, threads=1)
         checkpoints = []
-        optimizer.run(fsot.Until.slices(200), lambda step: checkpoints.append(step.checkpoint()), progress=False)
+        until = fsot.Until.slices(200)
+        optimizer.run(until, lambda step: checkpoints.append(step.checkpoint()), progress=False)
         other = fsot.Optimizer(pickle.loads(pickle.dumps(config)), threads=1)
         other.resume(checkpoints[2])
         other.finish(progress=False)
@@ -175,10 +177,10 @@ class TestSettings:
         "change, error, sentence",
         [
             (lambda c: c.with_terms([]), ValueError, "no term with a positive weight: give at least one"),
-            (lambda c: c.with_terms([fsot.Term(LATTICE, dims=[5])]), ValueError, "term 0: the dimension group"),
+            (lambda c: c.with_terms([fsot.Term(LATTICE, dims=[5])]), ValueError, "term 0: the dim"),
             (lambda c: c.with_terms(["lattice"]), TypeError, "Term"),
             (lambda c: c.with_terms(None), TypeError, "terms"),
-            (lambda c: fsot.Config.points(4, 1, [fsot.Term(LATTICE, dims=[0, 1])]), ValueError, "dimension 1"),
+            (lambda c: fsot.Config.points(4, 1, [fsot.Term(LATTICE, dims=[0, 1])]), ValueError, "dimension"),
             (lambda c: c.with_form("soft"), ValueError, "write level_sets or weighted"),
             (lambda c: c.with_form(3), TypeError, "form"),
             (lambda c: c.with_groups([[0, 7]]), ValueError, "names dimension 7, but the table has 2"),

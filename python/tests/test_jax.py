@@ -106,13 +106,17 @@ class TestArguments:
         assert [float(one) for one in several] == [
             float(filtered_sliced_loss(points, OBJECTIVE, step=step)) for step in range(3)
         ]
-        assert jax.grad(lambda at: filtered_sliced_loss(at, OBJECTIVE, step=jnp.asarray(1)))(points).shape == (16, 2)
+        slope = jax.grad(lambda at: filtered_sliced_loss(at, OBJECTIVE, step=jnp.asarray(1)))(points)
+        assert slope.shape == (16, 2)
 
     def test_large_seeds_are_python_s(self):
         points = noise(16, 2)
         expected = filtered_sliced_loss(points, OBJECTIVE, OBJECTIVE.draw(2**64 - 1, 2**40))
-        assert filtered_sliced_loss(points, OBJECTIVE, seed=2**64 - 1, step=2**40) == expected
-        assert jax.jit(lambda at: filtered_sliced_loss(at, OBJECTIVE, seed=2**64 - 1, step=2**40))(points) == expected
+
+        def ask(at):
+            return filtered_sliced_loss(at, OBJECTIVE, seed=2**64 - 1, step=2**40)
+
+        assert ask(points) == jax.jit(ask)(points) == expected
 
     @pytest.mark.parametrize(
         "arguments, error, sentence",
@@ -121,7 +125,7 @@ class TestArguments:
             ({"points": jnp.zeros((16, 2), jnp.bfloat16)}, TypeError, "bfloat16: give float32 or float64"),
             ({"points": jnp.zeros((16, 2), int)}, TypeError, "int32: give float32 or float64"),
             ({"points": jnp.ones((16, 2))}, ValueError, r"as by clamping to \[0, fsot.BELOW_ONE\]: sigmoids"),
-            ({"points": jnp.full((16, 2), jnp.nan)}, ValueError, r"is NaN: give finite values in \[0, 1\)(\n|$)"),
+            ({"points": jnp.full((16, 2), jnp.nan)}, ValueError, r"is NaN: give finite values in .*\)(\n|$)"),
             ({"points": jnp.zeros((2, 16))}, ValueError, r"points of shape \[2, 16\]"),
             ({"objective": fsot.Config(4, 4)}, TypeError, "is no objective"),
             ({"slices": "some"}, ValueError, "'some' are no slices"),

@@ -1,7 +1,9 @@
 """Values and gradients: the textbook's, and finite differences."""
 
+import contextlib
 import os
 import pickle
+import signal
 import threading
 import time
 
@@ -210,7 +212,7 @@ class TestPoints:
     @pytest.mark.parametrize(
         "points, error, sentence",
         [
-            (numpy.zeros((2, 32)), ValueError, r"points of shape \[2, 32\]: give \[1, 8, 4, 1, 2\], \[32, 2\] or"),
+            (numpy.zeros((2, 32)), ValueError, r"\[2, 32\]: give \[1, 8, 4, 1, 2\], \[32, 2\] or \[64\]"),
             (numpy.zeros(63), ValueError, "points of shape"),
             (0.5, ValueError, "points of shape"),
             (numpy.zeros((0, 2)), ValueError, "points of shape"),
@@ -231,117 +233,6 @@ class TestPoints:
     def test_below_one_is_below_one(self):
         assert numpy.float32(fsot.BELOW_ONE) == numpy.nextafter(numpy.float32(1), numpy.float32(0))
         assert self.objective.cramer(numpy.full((32, 2), fsot.BELOW_ONE))[0] > 0
-
-
-class TestSlices:
-    def setup_method(self):
-        self.objective = fsot.Objective(fsot.Config(4, 4, dims=3).with_groups([[0, 1], [2]]))
-        self.slices = self.objective.draw(1, 2)
-
-    def test_arrays_make_the_same_slices(self):
-        slices = self.slices
-        parts = slices.term, slices.member, slices.level, slices.direction, slices.cut
-        assert fsot.Slices(self.objective, *parts) == slices
-        assert [part.shape for part in parts] == [(len(slices),)] * 3 + [(len(slices), 3)] * 2
-        assert pickle.loads(pickle.dumps(slices)) == slices
-
-    def test_directions_are_unit_vectors_of_their_terms(self):
-        terms = self.objective.terms
-        for term, direction in zip(self.slices.term, self.slices.direction, strict=True):
-            assert numpy.linalg.norm(direction) == pytest.approx(1, abs=1e-6)
-            assert not numpy.delete(direction, terms[term].dims).any()
-
-    def test_a_torus_has_cuts(self):
-        objective = fsot.Objective(fsot.Config(4, 4).with_domain(["torus", "interval"]))
-        cut = objective.draw(steps=4).cut
-        assert len(numpy.unique(cut[:, 0])) > 1 and not cut[:, 1].any()
-
-    def test_steps_come_one_after_the_other(self):
-        together = self.objective.draw(1, 2, steps=3)
-        assert self.slices + self.objective.draw(1, 3) + self.objective.draw(1, 4) == together
-        assert self.objective.draw(1, 3) != self.slices != self.objective.draw(2, 2)
-        assert self.objective.draw(1, 2**64 - 1, steps=2)[-1:] == self.objective.draw(1, 0)[-1:]
-
-    def test_roles_are_drawn_apart(self):
-        roles = [term.role for term in self.objective.terms]
-        for role in ("descend", "balance"):
-            assert {roles[term] for term in self.objective.draw(role=role, steps=64).term} == {role}
-
-    def test_they_are_indexed_as_arrays_are(self):
-        slices = self.slices
-        assert slices[:3] + slices[3:] == slices
-        assert slices[-1] == slices[[len(slices) - 1]] and len(slices[-1]) == 1
-        assert slices[slices.level < 0.5] + slices[slices.level >= 0.5] != fsot.Slices
-        assert len(slices[slices.level < 0.5]) + len(slices[slices.level >= 0.5]) == len(slices)
-        with pytest.raises(IndexError):
-            slices[len(slices)]
-
-    def test_the_mean_of_parts_is_the_whole(self):
-        points = noise(self.objective.shape)
-        half = len(self.slices) // 2
-        parts = [self.objective.value_and_gradient(points, part)[0] for part in (self.slices[:half],
-                                                                                 self.slices[half:])]
-        whole = self.objective.value_and_gradient(points, self.slices)[0]
-        mean = (half * parts[0] + (len(self.slices) - half) * parts[1]) / len(self.slices)
-        assert whole == pytest.approx(mean, rel=1e-12)
-
-    @pytest.mark.parametrize(
-        "parts, error, sentence",
-        [
-            ((0, 0, 0.0, [1, 0, 0]), ValueError, r"direction has shape \[3\]: give \[slices, 3\]"),
-            ((0, 0, 0.0, [[1, 0]]), ValueError, r"direction has shape \[1, 2\]"),
-            ((0, 0, 0.0, [[1, 0, 1]]), ValueError, "along dimension 2, which term 0 doesn't see: give 0 there"),
-            ((99, 0, 0.0, [[1, 0, 0]]), ValueError, "slice 0: term is 99, but the objective has"),
-            (([0, 0], 0, 0.0, [[1, 0, 0]]), ValueError, r"term has shape \[2\]: give \[1\]"),
-            ((-1, 0, 0.0, [[1, 0, 0]]), ValueError, "term is -1: give whole numbers"),
-            ((0.5, 0, 0.0, [[1, 0, 0]]), TypeError, "term is 0.5: give whole numbers"),
-            ((0, 0, "low", [[1, 0, 0]]), TypeError, "give real numbers"),
-        ],
-    )
-    def test_what_are_no_slices_is_refused(self, parts, error, sentence):
-        with pytest.raises(error, match=sentence):
-            fsot.Slices(self.objective, *parts)
-
-    @pytest.mark.parametrize(
-        "parts, sentence",
-        [
-            ((0, 16, 0.0, [[1, 0, 0]]), "slice 0: member is 16, but the objective has 16: stay below it"),
-            ((0, 0, 1.0, [[1, 0, 0]]), r"slice 0: level is 1: give a level in \[0, 1\)"),
-            ((0, 0, 0.0, [[numpy.inf, 0, 0]]), "slice 0: direction is inf"),
-        ],
-    )
-    def test_the_objective_refuses_the_rest(self, parts, sentence):
-        slices = fsot.Slices(self.objective, *parts)
-        with pytest.raises(ValueError, match=sentence):
-            self.objective.value_and_gradient(noise((16, 3)), slices)
-
-    def test_slices_of_another_objective_are_refused(self):
-        other = fsot.Objective(fsot.Config(4, 4, dims=3).with_groups([[1, 0], [2]]))
-        with pytest.raises(ValueError, match="slices of another objective: draw them from this one"):
-            other.value_and_gradient(noise((16, 3)), self.slices)
-        with pytest.raises(ValueError, match="slices of two objectives"):
-            other.draw() + self.slices
-
-    @pytest.mark.parametrize(
-        "ask, error",
-        [
-            (lambda objective: objective.draw(-1), ValueError),
-            (lambda objective: objective.draw(0, 2**64), ValueError),
-            (lambda objective: objective.draw(steps=2**62), ValueError),
-            (lambda objective: objective.draw(steps=10**9), ValueError),
-            (lambda objective: objective.draw(role="rest"), ValueError),
-            (lambda objective: objective.draw("one"), TypeError),
-            (lambda objective: objective.draw(steps=1.5), TypeError),
-            (lambda objective: objective.taps(99), ValueError),
-            (lambda objective: objective.value_and_gradient(noise((16, 3)), "all"), TypeError),
-            (lambda objective: fsot.Objective("config"), TypeError),
-            (lambda objective: fsot.Objective(objective.config, threads=0), ValueError),
-            (lambda objective: fsot.Objective(objective.config.with_kernel(fsot.Kernel.gaussian(-1))), ValueError),
-        ],
-    )
-    def test_other_questions_are_refused(self, ask, error):
-        with pytest.raises(error):
-            ask(self.objective)
 
 
 class TestObjectives:
@@ -429,3 +320,50 @@ class TestObjectives:
         with os.fdopen(read) as pipe:
             assert pipe.read() == repr(expected)
         os.waitpid(child, 0)
+
+
+@contextlib.contextmanager
+def interrupted():
+    """Ctrl-C after a fifth of a second, in the midst of what would take half a minute of a core or more."""
+
+    def at_the_alarm(*_):
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGALRM, at_the_alarm)
+    begin = time.perf_counter()
+    signal.setitimer(signal.ITIMER_REAL, 0.2)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    # Heard within moments, but the machine may be busy.
+    assert time.perf_counter() - begin < 15
+
+
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="a system without timers")
+class TestInterrupts:
+    def test_of_all_slices(self):
+        objective = fsot.Objective(fsot.Config(64, 64, 32), threads=1)
+        points = noise(objective.shape)
+        with interrupted():
+            objective.cramer(points)
+        assert objective.value_and_gradient(points, objective.draw())[0] > 0
+
+    def test_of_many_slices(self):
+        objective = fsot.Objective(fsot.Config(32, 32, 8), threads=1)
+        points, slices = noise(objective.shape), objective.draw()
+        many = slices[numpy.arange(1_000_000) % len(slices)]
+        with interrupted():
+            objective.value_and_gradient(points, many)
+
+    def test_of_planning(self):
+        def quantiles(theta):
+            time.sleep(0.1)
+            return numpy.linspace(0, 0.5, 5)
+
+        target = fsot.Target.quantiles(quantiles, dims=2)
+        config = fsot.Config.points(8, 2, [fsot.Term(fsot.Classes.whole_table(), target, dims=[0, 1])])
+        with interrupted():
+            fsot.Objective(config, threads=1)

@@ -13,6 +13,7 @@ from fsot.torch import filtered_sliced_loss  # noqa: E402
 
 OBJECTIVE = fsot.Objective(fsot.Config(4, 4))
 SLICES = OBJECTIVE.draw(1, steps=2)
+TORUS = fsot.Objective(fsot.Config(4, 4).with_domain("torus"))
 
 
 def noise(*shape, dtype=torch.float64, seed=0):
@@ -50,7 +51,8 @@ class TestGradients:
         if slices == "all":
             value, gradient = OBJECTIVE.cramer(points.detach().numpy())
         else:
-            value, gradient = OBJECTIVE.value_and_gradient(points.detach().numpy(), slices or OBJECTIVE.draw())
+            drawn = slices or OBJECTIVE.draw()
+            value, gradient = OBJECTIVE.value_and_gradient(points.detach().numpy(), drawn)
         assert loss.dtype == points.grad.dtype == dtype and loss.shape == ()
         few = 10 * torch.finfo(dtype).eps
         assert loss.item() == pytest.approx(value, rel=few)
@@ -63,7 +65,9 @@ class TestGradients:
         with pytest.raises(RuntimeError, match="can be differentiated once.*use first derivatives alone"):
             slope.square().sum().backward()
         with pytest.raises(RuntimeError, match="can be differentiated once"):
-            torch.autograd.functional.hessian(lambda at: filtered_sliced_loss(at, OBJECTIVE, slices), noise(16, 2))
+            torch.autograd.functional.hessian(
+                lambda at: filtered_sliced_loss(at, OBJECTIVE, slices), noise(16, 2)
+            )
 
     def test_nothing_is_remembered_where_nothing_is_asked(self, slices):
         points = noise(16, 2)
@@ -104,7 +108,7 @@ class TestArguments:
     @pytest.mark.parametrize(
         "arguments, error, sentence",
         [
-            ({"points": noise(16, 2).half()}, TypeError, "float16: give float32 or float64, as by points.float"),
+            ({"points": noise(16, 2).half()}, TypeError, "float16: give float32 or float64, as by"),
             ({"points": noise(16, 2).bfloat16()}, TypeError, "bfloat16: give float32 or float64"),
             ({"points": torch.zeros(16, 2, dtype=torch.int64)}, TypeError, "int64: give float32 or float64"),
             ({"points": torch.zeros(16, 2, dtype=torch.complex64)}, TypeError, "complex64: give float32"),
@@ -113,18 +117,17 @@ class TestArguments:
             ({"points": numpy.zeros((16, 2))}, TypeError, "give a tensor, as by torch.as_tensor"),
             ({"points": torch.ones(16, 2)}, ValueError, r"as by clamping to \[0, fsot.BELOW_ONE\]: sigmoids"),
             ({"points": torch.full((16, 2), -1e-6)}, ValueError, "as by clamping"),
-            ({"points": torch.full((16, 2), torch.nan)}, ValueError, r"is NaN: give finite values in \[0, 1\)$"),
+            ({"points": torch.full((16, 2), torch.nan)}, ValueError, r"is NaN: give finite values in .*\)$"),
             ({"points": noise(2, 16)}, ValueError, r"points of shape \[2, 16\]"),
             ({"points": noise(0, 2)}, ValueError, r"points of shape \[0, 2\]"),
             ({"objective": fsot.Config(4, 4)}, TypeError, r"is no objective: give fsot.Objective\(config\)"),
             ({"slices": "some"}, ValueError, "'some' are no slices"),
             ({"slices": [1]}, TypeError, "are no slices: give those of"),
-            ({"slices": fsot.Objective(fsot.Config(4, 4, dims=3)).draw()}, ValueError, "of another objective"),
+            ({"slices": fsot.Objective(fsot.Config(4, 4, dims=3)).draw()}, ValueError, "of another"),
             ({"slices": SLICES, "seed": 0}, ValueError, "leave out seed and step"),
             ({"seed": -1}, ValueError, "give a whole number from 0"),
             ({"step": 0.5}, TypeError, "integer"),
-            ({"objective": fsot.Objective(fsot.Config(4, 4).with_domain("torus")), "slices": "all"}, ValueError,
-             "use slices"),
+            ({"objective": TORUS, "slices": "all"}, ValueError, "use slices"),
         ],
     )
     def test_others_are_refused(self, arguments, error, sentence):
