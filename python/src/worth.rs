@@ -98,12 +98,12 @@ fn cannot_write(path: &std::path::Path, error: &std::io::Error) -> PyErr {
     }
 }
 
+/// A sheet of pictures; each of them, and what it shows.
+type Pictures<'py> = (Bound<'py, PyBytes>, Vec<(String, Bound<'py, PyBytes>)>);
+
 /// What a notebook shows: a sheet of pictures as PNG; each of them, and what it shows.
 #[pyfunction]
-pub fn glance_at_table<'py>(
-    py: Python<'py>,
-    array: PyReadonlyArray5<'py, f32>,
-) -> PyResult<(Bound<'py, PyBytes>, Vec<(String, Bound<'py, PyBytes>)>)> {
+pub fn glance_at_table<'py>(py: Python<'py>, array: PyReadonlyArray5<'py, f32>) -> PyResult<Pictures<'py>> {
     let view = array.as_array();
     let glance = measured(py, None, || Glance::new(view))?.map_err(|failure| failed(&*failure))?;
     let sheet = PyBytes::new(py, &glance.sheet.to_png()?);

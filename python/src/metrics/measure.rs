@@ -143,7 +143,7 @@ fn bound_figures(estimate: &BoundEstimate) -> BoundFigures {
 /// Whose bound it is.
 #[derive(FromPyObject)]
 pub enum Aim<'py> {
-    Config(PyConfig),
+    Config(PyRef<'py, PyConfig>),
     Objective(PyRef<'py, PyObjective>),
 }
 
@@ -164,7 +164,7 @@ pub fn measure_bound(
             return Err(refused("the objective has its own kernel: leave out one of them"));
         }
         (Some(Aim::Objective(objective)), None) => Ok(Arc::clone(&objective.objective)),
-        (Some(Aim::Config(config)), None) => Err(config.0),
+        (Some(Aim::Config(config)), None) => Err(config.0.clone()),
         (None, kernel) => {
             let kernel = kernel.map_or_else(|| usual_kernel(given.frames()), |kernel| kernel.0);
             let groups = DimensionGroup::pairs_and_whole(given.dims);
