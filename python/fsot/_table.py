@@ -116,7 +116,8 @@ class Table:
         True
         """
         wrapped = [_whole(at) % length for at, length in zip((frame, y, x, sample), self.shape)]
-        return self._array[tuple(wrapped)]
+        found: NDArray[numpy.float32] = self._array[tuple(wrapped)]
+        return found
 
     def displacement(self, use: int) -> tuple[int, int]:
         """Rows and columns by which the `use`-th use of the table in a frame is displaced as a whole.
@@ -152,7 +153,8 @@ class Table:
         dy, dx = self.displacement(use)
         rows = (numpy.arange(height) + dy) % self.shape[1]
         columns = (numpy.arange(width) + dx) % self.shape[2]
-        return self._array[operator.index(frame) % self.shape[0]][rows[:, None], columns]
+        plane: NDArray[numpy.float32] = self._array[operator.index(frame) % self.shape[0]]
+        return plane[rows[:, None], columns]
 
     def mapped(self, mapping: str, dims: tuple[int, int] = (0, 1)) -> NDArray[numpy.float32]:
         """Two dimensions as vectors, by a map that keeps uniform what is uniform.
@@ -252,6 +254,8 @@ class Table:
         """
         if path is None and png is None:
             raise ValueError("there is nothing to write: give a path, or png=")
+        if path is not None and png is not None and os.path.realpath(path) == os.path.realpath(png):
+            raise ValueError(f"{path} is named twice: give png= another name")
         tables = {label: self, **(others or {})}
         if others and label in others:
             raise ValueError(f"two tables are called '{label}': give the others other names, or label=")
@@ -332,7 +336,7 @@ def made(array: NDArray[numpy.float32], metadata: dict[str, Any]) -> Table:
     """A table, whose metadata say of which values they are: nobody else's may be saved with them."""
     table = Table(array, metadata)
     little_endian = table.array.astype("<f4", copy=False)
-    table.metadata["sha256"] = hashlib.sha256(little_endian).hexdigest()
+    table.metadata["sha256"] = hashlib.sha256(little_endian.data).hexdigest()
     return table
 
 

@@ -68,6 +68,7 @@ type Taken =
 
 /// Makes a table of somebody else's file.
 #[pyfunction]
+#[allow(clippy::too_many_arguments)] // they are the arguments of a function of Python
 #[pyo3(signature = (path, axes, levels, lengths, channels, dtype, array))]
 pub fn import_table<'py>(
     py: Python<'py>,

@@ -20,7 +20,7 @@ pub fn save_table(
     metadata: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<()> {
     let table = table_of(array)?;
-    let metadata = metadata.map(|given| metadata_of(given, &table)).transpose()?;
+    let metadata = metadata.map(|given| whole_metadata_of(given, &table)).transpose()?;
     let save = || match &metadata {
         Some(metadata) => {
             // Those of other values would be lost, or would stay as those of these.
@@ -39,15 +39,28 @@ fn other(path: &std::path::Path, problem: FormatError) -> TableError {
 /// Metadata as they are given: those of a run, or notes alone.
 ///
 /// # Errors
-/// What is neither; what would be lost.
+/// What is neither.
 pub fn metadata_of(given: &Bound<'_, PyAny>, table: &SampleTable) -> PyResult<Metadata> {
+    parsed(fields_of(given, table)?)
+}
+
+fn fields_of(given: &Bound<'_, PyAny>, table: &SampleTable) -> PyResult<Map<String, Value>> {
     let mut fields: Map<String, Value> = json::of_python(given)?;
-    let own = blank(table);
-    for (name, value) in &own {
-        fields.entry(name).or_insert_with(|| value.clone());
+    for (name, value) in blank(table) {
+        fields.entry(name).or_insert(value);
     }
-    let metadata: Metadata = serde_json::from_value(Value::Object(fields.clone()))
-        .map_err(|error| refused(format!("metadata: {error}: correct that, or leave it out")))?;
+    Ok(fields)
+}
+
+fn parsed(fields: Map<String, Value>) -> PyResult<Metadata> {
+    serde_json::from_value(Value::Object(fields))
+        .map_err(|error| refused(format!("metadata: {error}: correct that, or leave it out")))
+}
+
+/// The same, of which nothing is lost.
+fn whole_metadata_of(given: &Bound<'_, PyAny>, table: &SampleTable) -> PyResult<Metadata> {
+    let fields = fields_of(given, table)?;
+    let metadata = parsed(fields.clone())?;
     let kept = serde_json::to_value(&metadata).python()?;
     match lost(&Value::Object(fields), &kept) {
         Some(place) => Err(refused(format!(

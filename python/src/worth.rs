@@ -17,8 +17,8 @@ use crate::counts::{Count, Number};
 use crate::errors::{OrPython, failed, refused};
 use crate::json;
 use crate::kernel::PyKernel;
+use crate::metrics::measured;
 use crate::tables::metadata_of;
-use crate::work::detached;
 
 fn yardstick(kernel: Option<PyKernel>, seed: Number) -> Yardstick {
     Yardstick { kernel: kernel.map(|kernel| kernel.0), seed: seed.0, ..Yardstick::default() }
@@ -37,13 +37,13 @@ pub fn inspect_table<'py>(
     integrands: Count,
     slices: Count,
     seed: Number,
-    threads: Option<usize>,
+    threads: Option<Count>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let table = table_of(array)?;
     let metadata = metadata.map(|given| metadata_of(given, &table)).transpose()?;
     let yardstick = yardstick(kernel, seed);
     let measure = || figures_of(name, table, metadata, &yardstick, integrands.0, slices.0);
-    json::to_python(py, &detached(py, threads, measure)?.map_err(|failure| failed(&*failure))?)
+    json::to_python(py, &measured(py, threads, measure)?.map_err(|failure| failed(&*failure))?)
 }
 
 /// Writes the page of `fsot report`, and a sheet of its pictures if that is wanted.
@@ -59,7 +59,7 @@ pub fn report_tables<'py>(
     integrands: Option<Count>,
     slices: Count,
     seed: Number,
-    threads: Option<usize>,
+    threads: Option<Count>,
 ) -> PyResult<()> {
     // What stands against the files is said before the work.
     for path in html.iter().chain(&png) {
@@ -75,7 +75,7 @@ pub fn report_tables<'py>(
     let integrands = integrands.map(|Count(count)| count);
     let made_by = "fsot.Table.report()";
     let measure = || pages(shown, made_by, &yardstick, integrands, slices.0);
-    let made = detached(py, threads, measure)?.map_err(|failure| failed(&*failure))?;
+    let made = measured(py, threads, measure)?.map_err(|failure| failed(&*failure))?;
     let Pages { html: page, png: sheet } = made;
     let files = [(&html, page.into_bytes()), (&png, sheet)];
     let files = files.iter().filter_map(|(path, bytes)| path.as_ref().map(|path| (path, bytes)));
@@ -98,13 +98,14 @@ fn cannot_write(path: &std::path::Path, error: &std::io::Error) -> PyErr {
     }
 }
 
+/// A sheet of pictures; each of them, and what it shows.
+type Pictures<'py> = (Bound<'py, PyBytes>, Vec<(String, Bound<'py, PyBytes>)>);
+
 /// What a notebook shows: a sheet of pictures as PNG; each of them, and what it shows.
 #[pyfunction]
-pub fn glance_at_table<'py>(
-    py: Python<'py>,
-    array: PyReadonlyArray5<'py, f32>,
-) -> PyResult<(Bound<'py, PyBytes>, Vec<(String, Bound<'py, PyBytes>)>)> {
-    let glance = Glance::new(array.as_array()).map_err(|failure| failed(&*failure))?;
+pub fn glance_at_table<'py>(py: Python<'py>, array: PyReadonlyArray5<'py, f32>) -> PyResult<Pictures<'py>> {
+    let view = array.as_array();
+    let glance = measured(py, None, || Glance::new(view))?.map_err(|failure| failed(&*failure))?;
     let sheet = PyBytes::new(py, &glance.sheet.to_png()?);
     let pictures =
         glance.pictures.into_iter().map(|(what, picture)| Ok((what, PyBytes::new(py, &picture.to_png()?))));

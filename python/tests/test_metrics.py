@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 import math
+import multiprocessing
 import pickle
 import threading
+import warnings
 
 import numpy
 import pytest
@@ -190,6 +192,14 @@ def test_a_centre_is_as_far_from_the_square_as_the_square_is_wide():
     )
 
 
+def test_targets_may_be_targets():
+    target = fsot.Target.density([[1.0, 3.0]])
+    points = grid(8)
+    assert metrics.sliced_distance(points, target=target) == metrics.sliced_distance(points, target=[[1, 3]])
+    assert metrics.sliced_distance(points, target=fsot.Target.uniform()) == metrics.sliced_distance(points)
+    assert metrics.density_match(points, target) == metrics.density_match(points, [[1, 3]])
+
+
 def test_points_in_the_dark_are_strays():
     left = numpy.zeros((1, 8))
     left[0, :4] = 1
@@ -214,6 +224,7 @@ def test_the_bound_of_a_configuration_is_that_of_its_run():
     assert before.ratio == pytest.approx(1, abs=0.1)
     assert after.ratio < 0.75 * before.ratio
     assert len(after.terms) == len(config.to_dict()["terms"])
+    assert metrics.bound(optimizer.table(), fsot.Objective(config)) == after
     other = fsot.Config(8, 16)
     with pytest.raises(ValueError, match=r"shape \[1, 16, 16, 1, 2\].*\[1, 16, 8, 1, 2\]"):
         metrics.bound(optimizer.table(), other)
@@ -289,6 +300,20 @@ def test_results_do_not_depend_on_threads(noise, integrands):
     assert one == two
 
 
+def test_a_forked_child_measures_too(noise):
+    if "fork" not in multiprocessing.get_all_start_methods():
+        pytest.skip("nothing forks here")
+    # The parent's threads are not the child's.
+    expected = bias_and_picture(noise)
+    with multiprocessing.get_context("fork").Pool(1) as pool, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        assert pool.apply_async(bias_and_picture, (noise,)).get(timeout=60) == expected
+
+
+def bias_and_picture(noise):
+    return metrics.bias(noise, dims=[0, 1]), fsot.Table(noise)._repr_png_()
+
+
 WRONG = {
     "a number": (0.5, ValueError, "give a table"),
     "a line": (numpy.zeros(4), ValueError, "give a table"),
@@ -354,10 +379,17 @@ def test_bad_questions_are_refused(noise):
         metrics.filtered_error(noise, dims=[0, 1], frames=4)
     with pytest.raises(ValueError, match="directions"):
         metrics.sliced_distance(noise, directions=0)
+    for threads in (0, -1, 100_000, 2**70):
+        with pytest.raises(ValueError, match="give a"):
+            metrics.discrepancy(noise, threads=threads)
     with pytest.raises(ValueError, match="slices"):
         metrics.bound(noise, slices=0)
     with pytest.raises(ValueError, match=r"\[y, x\]"):
         metrics.density_match([[0.5, 0.5]], [1.0])
+    with pytest.raises(ValueError, match="no density"):
+        metrics.density_match([[0.5, 0.5]], fsot.Target.uniform())
+    with pytest.raises(TypeError):
+        metrics.bound(noise, "usual")
     for density in ([[0.0]], [[-1.0]], [[math.nan]], numpy.zeros((0, 3))):
         with pytest.raises(ValueError):
             metrics.density_match([[0.5, 0.5]], density)

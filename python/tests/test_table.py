@@ -223,6 +223,8 @@ def test_pages_are_written_whole_or_not_at_all(table, tmp_path):
         table.report()
     with pytest.raises(ValueError, match="two tables are called"):
         table.report(tmp_path / "page.html", others={"table": table})
+    with pytest.raises(ValueError, match="named twice"):
+        table.report(tmp_path / "page.html", png=tmp_path / "." / "page.html")
     with pytest.raises(OSError, match="choose another path"):
         table.report(tmp_path / "no folder" / "page.html")
     with pytest.raises(OSError):
