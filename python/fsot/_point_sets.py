@@ -82,7 +82,7 @@ def classes(
     >>> fsot.classes([64, 32], subsets="every", slices=100, seed=7)
     <fsot.Points: 96 points of 2 dimensions, 2 labels>
     """
-    each = [counts] if isinstance(counts, numbers.Integral) else list(counts)  # type: ignore[arg-type]
+    each = [counts] if isinstance(counts, (int, numpy.integer)) else list(counts)
     plan = _fsot.plan_classes(each, dims, subsets, domain, seed)
     return _made(
         plan,
@@ -206,8 +206,9 @@ def stippling(
     OSError
         A file that cannot be read.
     ValueError
-        A file that is no picture; an array of another shape, with values that are negative or not finite, or
-        with nothing in it (all white, or all black where ``tone`` is ``"bright"``).
+        A file that is no picture; an array of another shape, with NaN, with light that is negative or
+        infinite where light draws points, or with nothing that draws any (all white, or all black where
+        ``tone`` is ``"bright"``).
     TypeError
         An array of other numbers.
 
@@ -218,7 +219,7 @@ def stippling(
     >>> import fsot, numpy
     >>> dark = numpy.array([[0.75, 0.25]])  # light, so that 0.25 and 0.75 are missing to white
     >>> points = fsot.stippling(dark, 64, slices=500)
-    >>> 46 <= (points.array[:, 0] > 0.5).sum() <= 50
+    >>> bool(46 <= (points.array[:, 0] > 0.5).sum() <= 50)
     True
     """
     plan = _fsot.plan_stippling(

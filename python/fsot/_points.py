@@ -6,7 +6,7 @@ import os
 from typing import Any
 
 import numpy
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from . import _fsot
 from ._table import _count
@@ -78,7 +78,8 @@ class Points:
     def of(self, label: int) -> NDArray[numpy.float32]:
         """The points with this label, ``[m, d]``, a copy; all of them for 0 where points have no labels."""
         labels = numpy.zeros(len(self), numpy.uint32) if self._labels is None else self._labels
-        return self._array[labels == label]
+        points: NDArray[numpy.float32] = self._array[labels == label]
+        return points
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the coordinates, and how they were made beside them, as the command does.
@@ -102,20 +103,17 @@ class Points:
     def __len__(self) -> int:
         return len(self._array)
 
-    def __array__(
-        self, dtype: numpy.dtype[Any] | None = None, copy: bool | None = None
-    ) -> NDArray[Any]:
-        if copy is False:
-            return numpy.asarray(self._array, dtype=dtype)
-        return numpy.array(self._array, dtype=dtype, copy=bool(copy))
+    def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
+        return numpy.array(self._array, dtype=dtype, copy=copy)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Points):
             return NotImplemented
-        if (self._labels is None) != (other._labels is None):
+        if not numpy.array_equal(self._array, other._array):
             return False
-        same = numpy.array_equal(self._array, other._array)
-        return same and (self._labels is None or numpy.array_equal(self._labels, other._labels))
+        if self._labels is None or other._labels is None:
+            return self._labels is other._labels
+        return numpy.array_equal(self._labels, other._labels)
 
     __hash__ = None  # type: ignore[assignment]
 

@@ -10,7 +10,6 @@ use fsot::{Config, Extent};
 use fsot_cli::points::{self, PointSet, usual};
 use ndarray::Array1;
 use numpy::PyArray1;
-use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 use serde_json::Value;
@@ -18,7 +17,7 @@ use serde_json::Value;
 use crate::arrays::{Numbers, to_numpy};
 use crate::config::PyConfig;
 use crate::counts::{Count, Number};
-use crate::errors::{OrPython, refused};
+use crate::errors::{OrPython, of_system, refused};
 use crate::json;
 use crate::picture::{Picture, Reading};
 use crate::settings::with_domain;
@@ -215,9 +214,6 @@ pub fn save_points(
     py.detach(write).map_err(|error| {
         let advice = "check the path and its permissions";
         let sentence = format!("cannot write {}: {error}; {advice}", path.display());
-        match error.raw_os_error() {
-            Some(number) => PyOSError::new_err((number, sentence)),
-            None => PyOSError::new_err(sentence),
-        }
+        of_system(&error, sentence)
     })
 }

@@ -37,11 +37,23 @@ def test_classes_and_their_union_are_uniform():
     assert max(map(discrepancy, (made.of(0), made.of(1), made.array))) < 1 / 6
 
 
+def neighbours(points):
+    """Distance of each point to its nearest neighbour, in units of 1 / sqrt(n)."""
+    points = numpy.asarray(points, numpy.float64)
+    distances = numpy.hypot(*(points[:, None] - points[None]).T)
+    numpy.fill_diagonal(distances, 2)
+    return distances.min(0) * numpy.sqrt(len(points))
+
+
 def test_only_sets_that_are_asked_for_are_uniform():
-    alone = fsot.classes([96, 96], subsets=[[0], [1]], slices=300, **QUIET)
-    both = fsot.classes([96, 96], subsets="every", slices=300, **QUIET)
-    assert discrepancy(alone.of(0)) < 1 / 6
-    assert discrepancy(both.array) < 0.5 * discrepancy(alone.array)
+    alone = fsot.classes([96, 96], subsets=[[0], [1]], slices=1000, **QUIET)
+    both = fsot.classes([96, 96], subsets="every", slices=1000, **QUIET)
+    for made in (alone, both):
+        assert max(discrepancy(made.of(0)), discrepancy(made.of(1))) < 1 / 6
+    # Points of two classes that know nothing of each other may coincide: the lower quartile of distances is
+    # 1.3 to 1.6 times as large where they do, over seeds.
+    nearest = [numpy.percentile(neighbours(made.array), 25) for made in (alone, both)]
+    assert nearest[1] > 1.2 * nearest[0], nearest
 
 
 def test_pairs_of_three_classes_are_uniform_if_every_set_is():
@@ -83,7 +95,8 @@ def test_inks_have_their_shares():
     assert numpy.bincount(dots.labels).tolist() == [100] * 4
     # Cyan at the upper left, magenta at the upper right, yellow and black below.
     corners = [dots.of(ink).mean(0) for ink in range(4)]
-    numpy.testing.assert_allclose(corners, [(0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75)], atol=0.02)
+    middles = [(0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75)]
+    numpy.testing.assert_allclose(corners, middles, atol=0.02)
     assert dots.metadata["labels"] == ["cyan", "magenta", "yellow", "black"]
 
 
@@ -158,8 +171,8 @@ def test_bright_is_that_of_the_command(command, tmp_path):
     picture = levels((12, 9, 3), "u1")
     Image.fromarray(picture).save(tmp_path / "picture.png")
     command(
-        "points", "stipple", "--picture", "picture.png", "--count", 50, "--bright", "--slices", 40, "--points",
-        "theirs.csv",
+        "points", "stipple", "--picture", "picture.png", "--count", 50, "--bright", "--slices", 40,
+        "--points", "theirs.csv",
     )
     made = fsot.stippling(picture, 50, tone="bright", slices=40, **QUIET)
     assert same_files(tmp_path, made, "theirs.csv")
@@ -254,7 +267,7 @@ BAD = {
     "no channels": (numpy.zeros((2, 2, 0)), ValueError, "0 channels: give 1"),
     "empty": (numpy.zeros((0, 4)), ValueError, "height"),
     "not a number": (NAN, ValueError, "NaN"),
-    "infinite": (numpy.array([[0.0, numpy.inf]]), ValueError, "inf"),
+    "darker than all": (numpy.array([[0.0, -numpy.inf]]), ValueError, "inf"),
     "white": (numpy.full((3, 3), 255, "u1"), ValueError, "above 0|nothing"),
     "int64": (numpy.zeros((2, 2), int), TypeError, "int64: give uint8"),
     "complex": (numpy.zeros((2, 2), complex), TypeError, "complex128: give uint8"),
@@ -277,6 +290,8 @@ def test_what_is_no_picture_is_refused(name, make):
 def test_light_below_none_is_refused_where_light_counts():
     with pytest.raises(ValueError, match="-1"):
         fsot.stippling(numpy.array([[-1.0, 2.0]]), 20, tone="bright", slices=1, **QUIET)
+    with pytest.raises(ValueError, match="inf"):
+        fsot.stippling(numpy.array([[0.5, numpy.inf]]), 20, tone="bright", slices=1, **QUIET)
     with pytest.raises(ValueError, match="above 0|nothing"):
         fsot.stippling(numpy.zeros((3, 3)), 20, tone="bright", slices=1, **QUIET)
 
@@ -300,8 +315,8 @@ DARK = numpy.zeros((2, 2))
         (lambda: fsot.classes([]), ValueError, "no points: give counts"),
         (lambda: fsot.classes([0, 0]), ValueError, "no points: give counts"),
         (lambda: fsot.classes([4, -1]), ValueError, "-1 is out of range"),
-        (lambda: fsot.classes([2**31]), ValueError, "2147483647|2\\^31|less|smaller|fewer"),
-        (lambda: fsot.classes([2**62, 2**62, 2**62, 2**62]), ValueError, "give"),
+        (lambda: fsot.classes([2**31]), ValueError, "stay at or below 2147483647"),
+        (lambda: fsot.classes([2**62] * 4), ValueError, "stay at or below"),
         (lambda: fsot.classes([10**40]), ValueError, "out of range"),
         (lambda: fsot.classes([2.5]), TypeError, "float"),
         (lambda: fsot.classes("ab"), TypeError, "str"),
@@ -316,7 +331,6 @@ DARK = numpy.zeros((2, 2))
         (lambda: fsot.classes([4], domain="ring"), ValueError, "'ring' is no domain"),
         (lambda: fsot.classes([4], domain=["torus"]), ValueError, "domain"),
         (lambda: fsot.classes([4], seed=-1), ValueError, "-1 is out of range"),
-        (lambda: fsot.classes([4], slices=0), ValueError, "give"),
         (lambda: fsot.classes([4], slices=10**10), ValueError, "give"),
         (lambda: fsot.classes([4], slices=4, seconds=1.0), ValueError, "twice: leave out one"),
         (lambda: fsot.classes([4], seconds=float("nan")), ValueError, "seconds"),
@@ -328,8 +342,8 @@ DARK = numpy.zeros((2, 2))
         (lambda: fsot.progressive(8, lengths=[0]), ValueError, "0"),
         (lambda: fsot.progressive(8, lengths=[(4, -1.0)]), ValueError, "-1"),
         (lambda: fsot.stippling(DARK, 0), ValueError, "count is 0"),
-        (lambda: fsot.stippling(DARK, 2**40), ValueError, "give"),
-        (lambda: fsot.color_stippling(DARK, 2**40), ValueError, "give"),
+        (lambda: fsot.stippling(DARK, 2**40), ValueError, "stay at or below"),
+        (lambda: fsot.color_stippling(DARK, 2**40), ValueError, "stay at or below"),
         (lambda: fsot.stippling(DARK, tone="grey"), ValueError, "'grey' is no tone: write dark or bright"),
         (lambda: fsot.stippling(DARK, transfer="gamma"), ValueError, "'gamma' is no transfer"),
         (lambda: fsot.stippling(DARK, most_pixels=0), ValueError, "most_pixels is 0"),
@@ -378,6 +392,9 @@ def test_points_are_read_only_views():
             array[0] = 0
     assert numpy.shares_memory(numpy.asarray(made, copy=False), made.array)
     assert not numpy.shares_memory(numpy.array(made), made.array)
+    assert numpy.array_equal(numpy.asarray(made, dtype="f8"), made.array.astype("f8"))
+    with pytest.raises(ValueError, match="copy"):
+        numpy.asarray(made, dtype="f8", copy=False)
     given = numpy.zeros((3, 2), numpy.float32)
     assert numpy.shares_memory(fsot.Points(given).array, given) and given.flags.writeable
 
@@ -462,4 +479,5 @@ def test_drawings_show_the_points():
 
 def test_words_for_people():
     assert repr(fsot.Points([[0.5]])) == "<fsot.Points: 1 point of 1 dimension>"
-    assert repr(fsot.classes([2, 1], slices=1, **QUIET)) == "<fsot.Points: 3 points of 2 dimensions, 2 labels>"
+    made = fsot.classes([2, 1], slices=1, **QUIET)
+    assert repr(made) == "<fsot.Points: 3 points of 2 dimensions, 2 labels>"
