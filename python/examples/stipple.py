@@ -19,7 +19,8 @@ def ball(width: int = 240, height: int = 180) -> numpy.ndarray:
     shading = 0.05 + 0.9 * numpy.clip(0.6 * toward - 0.6 * dx - 0.5 * dy, 0, 1)
     shadow = numpy.exp(-(((x - 0.78) / 0.3) ** 2) - ((y - 0.8) / 0.07) ** 2)
     table = numpy.where(y > 0.62, 0.75 - 0.55 * shadow, 0.95 - 0.3 * y)
-    return numpy.where(distance < 1, shading, table)
+    picture: numpy.ndarray = numpy.where(distance < 1, shading, table)
+    return picture
 
 
 def main(path: str = "dots.png") -> None:

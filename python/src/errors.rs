@@ -1,7 +1,7 @@
 //! The library's errors as Python's: its own sentences, in the kind that callers catch.
 
 use std::error::Error;
-use std::io;
+use std::io::{self, ErrorKind};
 
 use fsot::optimizer::CheckpointError;
 use pyo3::PyErr;
@@ -25,33 +25,48 @@ pub fn refused(sentence: impl ToString) -> PyErr {
     PyValueError::new_err(sentence.to_string())
 }
 
+/// A failure of the command's.
+pub fn failed(failure: &(dyn Error + Send + Sync + 'static)) -> PyErr {
+    exception(failure)
+}
+
 fn exception(error: &(dyn Error + 'static)) -> PyErr {
     match refusal_of_system(error) {
-        Some(refusal) => of_system(refusal, error.to_string()),
+        Some(number) => PyOSError::new_err((number, error.to_string())),
         None => refused(error),
+    }
+}
+
+/// The number of the system's refusal, if this is one.
+fn refusal_of_system(error: &(dyn Error + 'static)) -> Option<i32> {
+    // A checkpoint's error shows what it wraps, and so doesn't name it as its source.
+    if let Some(CheckpointError::File { problem, .. }) = error.downcast_ref() {
+        return refusal_of_system(&**problem);
+    }
+    match error.downcast_ref::<io::Error>() {
+        Some(error) => number_of(error),
+        None => error.source().and_then(refusal_of_system),
     }
 }
 
 /// A refusal of the system's, in these words.
 pub fn of_system(refusal: &io::Error, sentence: String) -> PyErr {
-    match refusal.raw_os_error() {
+    match number_of(refusal) {
         Some(number) => PyOSError::new_err((number, sentence)),
-        // `FileNotFoundError` and the like.
-        None => io::Error::new(refusal.kind(), sentence).into(),
+        None => PyOSError::new_err(sentence),
     }
 }
 
-/// What the system has said, if this is a refusal of its.
-fn refusal_of_system<'a>(error: &'a (dyn Error + 'static)) -> Option<&'a io::Error> {
-    use io::ErrorKind::{IsADirectory, NotADirectory, NotFound, PermissionDenied};
-    // A checkpoint's error shows what it wraps, and so doesn't name it as its source.
-    if let Some(CheckpointError::File { problem, .. }) = error.downcast_ref() {
-        return refusal_of_system(&**problem);
+/// Its number, also of what the library found out itself before it asked the system.
+fn number_of(refusal: &io::Error) -> Option<i32> {
+    if let Some(number) = refusal.raw_os_error() {
+        return Some(number);
     }
-    let Some(refusal) = error.downcast_ref::<io::Error>() else {
-        return error.source().and_then(refusal_of_system);
-    };
-    // The library finds some of them out by itself, which then have no number; others are of a file's bytes.
-    let is_found_out = matches!(refusal.kind(), NotFound | PermissionDenied | IsADirectory | NotADirectory);
-    (refusal.raw_os_error().is_some() || is_found_out).then_some(refusal)
+    match refusal.kind() {
+        ErrorKind::NotFound => Some(2),
+        ErrorKind::PermissionDenied => Some(13),
+        ErrorKind::NotADirectory => Some(20),
+        ErrorKind::IsADirectory => Some(21),
+        _ => None,
+    }
 }

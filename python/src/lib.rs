@@ -10,6 +10,7 @@ mod counts;
 mod demand;
 mod drawing;
 mod errors;
+mod exchange;
 mod json;
 mod kernel;
 mod make;
@@ -28,6 +29,7 @@ mod target;
 mod term;
 mod until;
 mod work;
+mod worth;
 
 #[pymodule]
 mod _fsot {
@@ -46,6 +48,8 @@ mod _fsot {
     use crate::demand::PyDemand;
     #[pymodule_export]
     use crate::drawing::draw_points;
+    #[pymodule_export]
+    use crate::exchange::{export_table, import_table};
     #[pymodule_export]
     use crate::kernel::PyKernel;
     #[pymodule_export]
@@ -71,13 +75,15 @@ mod _fsot {
     #[pymodule_export]
     use crate::step::PyStep;
     #[pymodule_export]
-    use crate::tables::{check_table, load_table, save_table};
+    use crate::tables::{check_table, displacement, left_beside, load_table, save_table};
     #[pymodule_export]
     use crate::target::PyTarget;
     #[pymodule_export]
     use crate::term::PyTerm;
     #[pymodule_export]
     use crate::until::{Until, until};
+    #[pymodule_export]
+    use crate::worth::{glance_at_table, inspect_table, mapped_table, report_tables};
 
     /// Runs the command `fsot` with these arguments, and returns its exit code.
     #[pyfunction]
