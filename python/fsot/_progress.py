@@ -34,4 +34,7 @@ def bar(shown: bool) -> Iterator[Callable[[Step], None] | None]:
 
 
 def _in_notebook() -> bool:
-    return "ipykernel" in sys.modules
+    """Whether a kernel runs this process, not merely that its module is there."""
+    ipython = sys.modules.get("IPython")
+    shell = ipython.get_ipython() if ipython is not None else None
+    return hasattr(shell, "kernel")
