@@ -322,7 +322,7 @@ def test_foreign_metadata_are_refused_in_the_library_s_words(tmp_path, command):
     first = fsot.table(8, 8, sweeps=2, progress=False)
     first.save(path)
     other = white(1, 8, 8, 1, 2)
-    with pytest.warns(UserWarning, match="of another table: delete it"):
+    with pytest.warns(UserWarning, match="is not of this table: delete it"):
         other.save(path)
     with pytest.raises(ValueError) as refusal:
         fsot.Table.load(path)
@@ -341,5 +341,6 @@ def test_tables_travel():
     table = fsot.table(8, 8, sweeps=2, progress=False)
     again = pickle.loads(pickle.dumps(table))
     assert again == table and again.metadata == table.metadata
+    assert not again.array.flags.writeable
     again.metadata["note"] = 1
     assert "note" not in table.metadata
