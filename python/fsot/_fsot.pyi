@@ -2,7 +2,7 @@
 
 import os
 import pathlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, ClassVar, TypeAlias, final
 
 import numpy
@@ -10,20 +10,28 @@ from numpy.typing import ArrayLike, NDArray
 from typing_extensions import Self, disjoint_base
 
 __all__ = [
+    "BELOW_ONE",
     "Checkpoint",
+    "Classes",
     "Config",
+    "Demand",
     "Integrand",
     "Integrands",
     "Kernel",
+    "Objective",
     "Optimizer",
     "Report",
+    "Slices",
     "Step",
+    "Target",
+    "Term",
     "Until",
     "__version__",
     "check_table",
     "command",
     "configure",
     "displacement",
+    "draw_points",
     "export_table",
     "glance_at_table",
     "import_table",
@@ -41,17 +49,26 @@ __all__ = [
     "measure_set_error",
     "measure_sliced_distance",
     "measure_spectra",
+    "plan_classes",
+    "plan_color_stippling",
+    "plan_progressive",
+    "plan_stippling",
     "report_tables",
+    "save_points",
     "save_table",
     "spectra_of_image",
     "until",
 ]
 
+BELOW_ONE: float
 __version__: str
 
-_Domain: TypeAlias = str | list[str]
-_Group: TypeAlias = Sequence[int] | tuple[Sequence[int], float]
+_Dims: TypeAlias = int | Sequence[int] | NDArray[numpy.integer]
+_Domain: TypeAlias = str | Sequence[str]
+_Group: TypeAlias = _Dims | tuple[Sequence[int], float]
 _Path: TypeAlias = str | os.PathLike[str]
+_Schedule: TypeAlias = float | Sequence[float] | NDArray[numpy.floating] | dict[str, Any]
+_Shape: TypeAlias = tuple[int, int, int, int, int]
 _Temporal: TypeAlias = str | ArrayLike
 _Taken: TypeAlias = tuple[
     str, str, list[int], list[str], int | None, int, int, list[int], pathlib.Path | None
@@ -83,19 +100,182 @@ class Until:
 @final
 class Kernel:
     __hash__: ClassVar[None]  # type: ignore[assignment]
+    def __new__(
+        cls, weights: ArrayLike, *, temporal: _Temporal | None = None, truncation: float = 1e-3
+    ) -> Self: ...
     @staticmethod
-    def gaussian(sigma: float = 2.1, *, temporal: _Temporal | None = None) -> Kernel: ...
+    def gaussian(
+        sigma: float = 2.1, *, temporal: _Temporal | None = None, truncation: float = 1e-3
+    ) -> Kernel: ...
     @staticmethod
-    def box_(size: int, *, temporal: _Temporal | None = None) -> Kernel: ...
+    def box_(size: int, *, temporal: _Temporal | None = None, truncation: float = 1e-3) -> Kernel: ...
     @staticmethod
-    def binomial(size: int, *, temporal: _Temporal | None = None) -> Kernel: ...
+    def binomial(size: int, *, temporal: _Temporal | None = None, truncation: float = 1e-3) -> Kernel: ...
+    @property
+    def truncation(self) -> float: ...
     def with_temporal(self, temporal: _Temporal) -> Kernel: ...
+    def with_truncation(self, truncation: float) -> Kernel: ...
+    def separate(self) -> list[Kernel]: ...
     def taps(self, width: int = 64, height: int = 64, frames: int = 1) -> NDArray[numpy.float64]: ...
     def to_dict(self) -> dict[str, Any]: ...
     @staticmethod
     def from_dict(data: dict[str, Any]) -> Kernel: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
+
+@final
+class Classes:
+    __hash__: ClassVar[None]  # type: ignore[assignment]
+    @staticmethod
+    def lattice(kernel: Kernel, form: str = "level_sets") -> Classes: ...
+    @staticmethod
+    def whole_table() -> Classes: ...
+    @staticmethod
+    def per_frame() -> Classes: ...
+    @staticmethod
+    def per_pixel() -> Classes: ...
+    @staticmethod
+    def labelled(
+        labels: ArrayLike, subsets: Iterable[ArrayLike], weights: ArrayLike | None = None
+    ) -> Classes: ...
+    @staticmethod
+    def ramps(coordinates: ArrayLike, ramps: Sequence[str] = ("rising", "falling")) -> Classes: ...
+    @staticmethod
+    def prefixes(
+        of: str = "table", lengths: str | Iterable[int | tuple[int, float]] = "powers_of_two"
+    ) -> Classes: ...
+    @staticmethod
+    def listed(
+        members: Iterable[ArrayLike | tuple[ArrayLike, ArrayLike]],
+        weights: ArrayLike | None = None,
+        *,
+        name: str = "listed",
+    ) -> Classes: ...
+    @property
+    def kind(self) -> str: ...
+    @property
+    def kernel(self) -> Kernel | None: ...
+    def to_dict(self) -> Any: ...
+    @staticmethod
+    def from_dict(data: Any) -> Classes: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+
+@final
+class Target:
+    __hash__: ClassVar[None]  # type: ignore[assignment]
+    @staticmethod
+    def uniform() -> Target: ...
+    @staticmethod
+    def density(values: ArrayLike, *, averaging: bool = True) -> Target: ...
+    @staticmethod
+    def cloud(points: ArrayLike) -> Target: ...
+    @staticmethod
+    def quantiles(
+        quantiles: ArrayLike | Callable[[NDArray[numpy.float64]], ArrayLike],
+        dims: int = 1,
+        *,
+        name: str = "quantiles",
+    ) -> Target: ...
+    @property
+    def kind(self) -> str: ...
+    @property
+    def dims(self) -> int | None: ...
+    def to_dict(self) -> Any: ...
+    @staticmethod
+    def from_dict(data: Any) -> Target: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+
+@final
+class Term:
+    __hash__: ClassVar[None]  # type: ignore[assignment]
+    def __new__(
+        cls,
+        classes: Classes,
+        target: Target | None = None,
+        *,
+        dims: _Dims,
+        weight: float = 1.0,
+        role: str = "descend",
+    ) -> Self: ...
+    @property
+    def classes(self) -> Classes: ...
+    @property
+    def target(self) -> Target: ...
+    @property
+    def dims(self) -> list[int]: ...
+    @property
+    def weight(self) -> float: ...
+    @property
+    def role(self) -> str: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+
+@final
+class Demand:
+    __hash__: ClassVar[None]  # type: ignore[assignment]
+    def __new__(cls, pixels: ArrayLike, groups: Iterable[_Dims] | None = None) -> Self: ...
+    @property
+    def pixels(self) -> NDArray[numpy.bool_]: ...
+    @property
+    def groups(self) -> list[list[int]] | None: ...
+    @property
+    def share(self) -> float: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+
+@final
+class Slices:
+    __hash__: ClassVar[None]  # type: ignore[assignment]
+    def __new__(
+        cls,
+        objective: Objective,
+        term: ArrayLike,
+        member: ArrayLike,
+        level: ArrayLike,
+        direction: ArrayLike,
+        cut: ArrayLike | None = None,
+    ) -> Self: ...
+    @property
+    def term(self) -> NDArray[numpy.uint32]: ...
+    @property
+    def member(self) -> NDArray[numpy.uint32]: ...
+    @property
+    def level(self) -> NDArray[numpy.float64]: ...
+    @property
+    def direction(self) -> NDArray[numpy.float64]: ...
+    @property
+    def cut(self) -> NDArray[numpy.float64]: ...
+    def __len__(self) -> int: ...
+    def __getitem__(
+        self, key: int | slice | Sequence[int] | NDArray[numpy.integer] | NDArray[numpy.bool_], /
+    ) -> Slices: ...
+    def __add__(self, other: Slices, /) -> Slices: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+
+@final
+class Objective:
+    def __new__(
+        cls, config: Config, demand: Demand | None = None, *, threads: int | None = None
+    ) -> Self: ...
+    @property
+    def shape(self) -> _Shape: ...
+    @property
+    def config(self) -> Config: ...
+    @property
+    def demand(self) -> Demand | None: ...
+    @property
+    def terms(self) -> list[Term]: ...
+    def taps(self, term: int) -> NDArray[numpy.float64] | None: ...
+    def draw(
+        self, seed: int = 0, step: int = 0, *, steps: int = 1, role: str = "descend"
+    ) -> Slices: ...
+    def value_and_gradient(
+        self, points: ArrayLike, slices: Slices
+    ) -> tuple[float, NDArray[numpy.float64]]: ...
+    def cramer(self, points: ArrayLike) -> tuple[float, NDArray[numpy.float64]]: ...
 
 @final
 class Config:
@@ -110,8 +290,28 @@ class Config:
         *,
         seed: int = 0,
     ) -> Self: ...
+    @staticmethod
+    def points(count: int, dims: int, terms: Sequence[Term]) -> Config: ...
     @property
-    def shape(self) -> tuple[int, int, int, int, int]: ...
+    def shape(self) -> _Shape: ...
+    @property
+    def dims(self) -> int: ...
+    @property
+    def domains(self) -> list[str]: ...
+    @property
+    def terms(self) -> list[Term]: ...
+    @property
+    def groups(self) -> list[tuple[list[int], float]]: ...
+    @property
+    def companions(self) -> bool: ...
+    @property
+    def slicing(self) -> dict[str, Any]: ...
+    @property
+    def descent(self) -> dict[str, Any]: ...
+    @property
+    def sweeps(self) -> dict[str, Any]: ...
+    @property
+    def balance(self) -> dict[str, Any]: ...
     @property
     def seed(self) -> int: ...
     @property
@@ -122,6 +322,30 @@ class Config:
     def with_groups(self, groups: Sequence[_Group]) -> Config: ...
     def with_domain(self, domain: _Domain) -> Config: ...
     def with_companions(self, companions: bool) -> Config: ...
+    def with_form(self, form: str) -> Config: ...
+    def with_terms(self, terms: Sequence[Term]) -> Config: ...
+    def with_slicing(
+        self, *, directions: int = 16, axis_share: float = 0.0, batch_slices: int | None = None
+    ) -> Config: ...
+    def with_descent(
+        self,
+        descent: str | dict[str, Any],
+        *,
+        rate: _Schedule | None = None,
+        momentum: float | None = None,
+        beta1: float | None = None,
+        beta2: float | None = None,
+        epsilon: float | None = None,
+    ) -> Config: ...
+    def with_sweeps(
+        self,
+        *,
+        rate: _Schedule | None = None,
+        polish: _Schedule | None = None,
+        truncation: float | None = None,
+        softening: float | None = None,
+    ) -> Config: ...
+    def with_balance(self, balance: _Schedule) -> Config: ...
     def to_dict(self) -> dict[str, Any]: ...
     @staticmethod
     def from_dict(data: dict[str, Any]) -> Config: ...
@@ -177,7 +401,14 @@ class Checkpoint:
 
 @disjoint_base
 class Optimizer:
-    def __new__(cls, config: Config, *, threads: int | None = None) -> Self: ...
+    def __new__(
+        cls,
+        config: Config,
+        *,
+        demand: Demand | None = None,
+        start: Any = None,
+        threads: int | None = None,
+    ) -> Self: ...
     @property
     def config(self) -> Config: ...
     @property
@@ -194,6 +425,7 @@ class Optimizer:
         callback: Callable[[Step], bool | None] | None,
         progress: Callable[[Step], None] | None,
     ) -> tuple[Report, BaseException | None]: ...
+    def _record(self) -> dict[str, Any]: ...
     def _table(self) -> tuple[NDArray[numpy.float32], dict[str, Any]]: ...
 
 def configure(
@@ -205,7 +437,7 @@ def configure(
     *,
     sigma: float | None,
     temporal: _Temporal | None,
-    kernel: Kernel | None,
+    kernel: Kernel | ArrayLike | None,
     groups: Sequence[_Group] | None,
     domain: _Domain | None,
     seed: int,
@@ -292,7 +524,6 @@ class Integrands:
     def families(self) -> dict[str, list[Integrand]]: ...
     def __len__(self) -> int: ...
 
-_Dims: TypeAlias = int | Sequence[int] | None
 _OfFamilies: TypeAlias = tuple[tuple[float, float], list[tuple[str, tuple[float, float]]]]
 _BoundFigures: TypeAlias = tuple[float, float, float, float]
 _SpectraArrays: TypeAlias = tuple[
@@ -304,17 +535,17 @@ _SpectraArrays: TypeAlias = tuple[
 
 def measure_filtered_error(
     samples: ArrayLike,
-    dims: _Dims,
+    dims: _Dims | None,
     integrands: Integrands | None,
     kernel: Kernel | None,
     frames: int | None,
     threads: int | None,
 ) -> list[_OfFamilies]: ...
 def measure_bias(
-    samples: ArrayLike, dims: _Dims, integrands: Integrands | None, threads: int | None
+    samples: ArrayLike, dims: _Dims | None, integrands: Integrands | None, threads: int | None
 ) -> list[_OfFamilies]: ...
 def measure_set_error(
-    samples: ArrayLike, dims: _Dims, integrands: Integrands | None, threads: int | None
+    samples: ArrayLike, dims: _Dims | None, integrands: Integrands | None, threads: int | None
 ) -> _OfFamilies: ...
 def measure_bound(
     samples: ArrayLike,
@@ -325,11 +556,11 @@ def measure_bound(
     threads: int | None,
 ) -> tuple[_BoundFigures, list[_BoundFigures]]: ...
 def measure_spectra(
-    samples: ArrayLike, dims: _Dims, integrands: Integrands | None, threads: int | None
+    samples: ArrayLike, dims: _Dims | None, integrands: Integrands | None, threads: int | None
 ) -> _SpectraArrays: ...
 def spectra_of_image(errors: ArrayLike, variance: float | None) -> _SpectraArrays: ...
 def measure_error_image(
-    samples: ArrayLike, integrand: Integrand, dims: _Dims, threads: int | None
+    samples: ArrayLike, integrand: Integrand, dims: _Dims | None, threads: int | None
 ) -> tuple[NDArray[numpy.float64], float]: ...
 def measure_marginal(
     samples: ArrayLike, dim: int, bins: int, threads: int | None
@@ -337,10 +568,51 @@ def measure_marginal(
 def measure_histogram(
     samples: ArrayLike, dims: Sequence[int], cells_per_side: int, threads: int | None
 ) -> tuple[NDArray[numpy.uint64], float]: ...
-def measure_discrepancy(samples: ArrayLike, dims: _Dims, threads: int | None) -> tuple[float, float]: ...
+def measure_discrepancy(samples: ArrayLike, dims: _Dims | None, threads: int | None) -> tuple[float, float]: ...
 def measure_sliced_distance(
-    samples: ArrayLike, dims: _Dims, target: Target | ArrayLike | None, directions: int, threads: int | None
+    samples: ArrayLike, dims: _Dims | None, target: Target | ArrayLike | None, directions: int, threads: int | None
 ) -> float: ...
 def measure_density_match(
     samples: ArrayLike, density: Target | ArrayLike, sigma: float, dims: Sequence[int], threads: int | None
 ) -> tuple[tuple[float, int], tuple[float, int, int, int, int, float]]: ...
+_Labels: TypeAlias = NDArray[numpy.uint32] | None
+_Picture: TypeAlias = ArrayLike | _Path
+_Plan: TypeAlias = tuple[Config, _Labels, int, float]
+
+def plan_classes(
+    counts: Sequence[int],
+    dims: int,
+    subsets: str | Sequence[Sequence[int]],
+    domain: _Domain | None,
+    seed: int,
+) -> _Plan: ...
+def plan_progressive(
+    count: int,
+    dims: int,
+    lengths: str | Sequence[int | tuple[int, float]],
+    domain: _Domain | None,
+    seed: int,
+) -> _Plan: ...
+def plan_stippling(
+    picture: _Picture,
+    count: int,
+    tone: str,
+    transfer: str | None,
+    layer: str | None,
+    most_pixels: int | None,
+    limit_pixels: int,
+    seed: int,
+    threads: int | None,
+) -> _Plan: ...
+def plan_color_stippling(
+    picture: _Picture,
+    count: int,
+    transfer: str | None,
+    layer: str | None,
+    most_pixels: int | None,
+    limit_pixels: int,
+    seed: int,
+    threads: int | None,
+) -> _Plan: ...
+def save_points(path: _Path, points: ArrayLike, labels: ArrayLike | None, metadata: dict[str, Any]) -> None: ...
+def draw_points(points: ArrayLike, labels: ArrayLike | None, kind: str, aspect: float) -> bytes: ...

@@ -13,8 +13,8 @@ Slices = _fsot.Slices | Literal["all"] | None
 
 #: What is said of second derivatives.
 ONCE = (
-    "the filtered sliced loss can be differentiated once: its gradient is computed outside of {}, where nothing "
-    "differentiates it; use first derivatives alone, or finite differences of the gradient"
+    "the filtered sliced loss can be differentiated once: its gradient is computed outside of {}, where "
+    "nothing differentiates it; use first derivatives alone, or finite differences of the gradient"
 )
 
 

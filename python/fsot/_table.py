@@ -303,7 +303,7 @@ class Table:
             ending = pathlib.PurePath(path).suffix.lower()
             if ending not in _FORMATS:
                 known = ", ".join(_FORMATS)
-                raise ValueError(f"no format is known by the ending of {path}: give format=, or one of {known}")
+                raise ValueError(f"the ending of {path} names no format: give format=, or one of {known}")
             format = _FORMATS[ending]
         depth = None if bits is None else str(bits)
         files, record_path, record = _fsot.export_table(path, self._array, format, depth, rounding, name)

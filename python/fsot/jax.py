@@ -25,7 +25,7 @@ try:
 except ImportError as error:  # pragma: no cover
     raise ImportError("fsot.jax needs JAX: pip install jax") from error
 
-__all__ = ["filtered_sliced_loss"]
+__all__ = ["Slices", "filtered_sliced_loss"]
 
 
 def filtered_sliced_loss(

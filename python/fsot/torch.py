@@ -22,7 +22,7 @@ try:
 except ImportError as error:  # pragma: no cover
     raise ImportError("fsot.torch needs PyTorch: pip install torch") from error
 
-__all__ = ["filtered_sliced_loss"]
+__all__ = ["Slices", "filtered_sliced_loss"]
 
 
 def filtered_sliced_loss(
@@ -85,7 +85,7 @@ class _Loss(torch.autograd.Function):
     """Value, and the gradient for the backward pass, which nobody else sees."""
 
     @staticmethod
-    def forward(  # type: ignore[override]
+    def forward(
         points: torch.Tensor, objective: _fsot.Objective, slices: Slices, seed: int, step: int
     ) -> tuple[torch.Tensor, torch.Tensor]:
         values = points.detach().resolve_neg().cpu().numpy()
@@ -109,7 +109,7 @@ class _Loss(torch.autograd.Function):
         return (torch.stack(losses), torch.stack(slopes)), (0, 0)
 
     @staticmethod
-    def backward(ctx: Any, of_loss: torch.Tensor, _: torch.Tensor) -> tuple[Any, ...]:  # type: ignore[override]
+    def backward(ctx: Any, of_loss: torch.Tensor, _: torch.Tensor) -> tuple[Any, ...]:
         points, slopes = ctx.saved_tensors
         return _Slope.apply(points, slopes, of_loss), None, None, None, None
 
@@ -120,7 +120,7 @@ class _Slope(torch.autograd.Function):
     generate_vmap_rule = True
 
     @staticmethod
-    def forward(  # type: ignore[override]
+    def forward(
         points: torch.Tensor, slopes: torch.Tensor, of_loss: torch.Tensor
     ) -> torch.Tensor:
         return of_loss * slopes
@@ -130,5 +130,5 @@ class _Slope(torch.autograd.Function):
         pass
 
     @staticmethod
-    def backward(ctx: Any, _: torch.Tensor) -> tuple[Any, ...]:  # type: ignore[override]
+    def backward(ctx: Any, _: torch.Tensor) -> tuple[Any, ...]:
         raise RuntimeError(ONCE.format("torch"))

@@ -44,14 +44,25 @@ fn refusal_of_system(error: &(dyn Error + 'static)) -> Option<i32> {
         return refusal_of_system(&**problem);
     }
     match error.downcast_ref::<io::Error>() {
-        Some(error) => error.raw_os_error().or_else(|| number_of(error.kind())),
+        Some(error) => number_of(error),
         None => error.source().and_then(refusal_of_system),
     }
 }
 
-/// The number of what the library found out itself, before it asked the system.
-fn number_of(kind: ErrorKind) -> Option<i32> {
-    match kind {
+/// A refusal of the system's, in these words.
+pub fn of_system(refusal: &io::Error, sentence: String) -> PyErr {
+    match number_of(refusal) {
+        Some(number) => PyOSError::new_err((number, sentence)),
+        None => PyOSError::new_err(sentence),
+    }
+}
+
+/// Its number, also of what the library found out itself before it asked the system.
+fn number_of(refusal: &io::Error) -> Option<i32> {
+    if let Some(number) = refusal.raw_os_error() {
+        return Some(number);
+    }
+    match refusal.kind() {
         ErrorKind::NotFound => Some(2),
         ErrorKind::PermissionDenied => Some(13),
         ErrorKind::NotADirectory => Some(20),

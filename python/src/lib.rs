@@ -8,6 +8,7 @@ mod classes;
 mod config;
 mod counts;
 mod demand;
+mod drawing;
 mod errors;
 mod exchange;
 mod json;
@@ -17,6 +18,8 @@ mod metrics;
 mod objective;
 mod optimizer;
 mod own;
+mod picture;
+mod points;
 mod pool;
 mod settings;
 mod slices;
@@ -44,6 +47,8 @@ mod _fsot {
     #[pymodule_export]
     use crate::demand::PyDemand;
     #[pymodule_export]
+    use crate::drawing::draw_points;
+    #[pymodule_export]
     use crate::exchange::{export_table, import_table};
     #[pymodule_export]
     use crate::kernel::PyKernel;
@@ -63,6 +68,8 @@ mod _fsot {
     use crate::objective::PyObjective;
     #[pymodule_export]
     use crate::optimizer::{PyOptimizer, PyReport};
+    #[pymodule_export]
+    use crate::points::{plan_classes, plan_color_stippling, plan_progressive, plan_stippling, save_points};
     #[pymodule_export]
     use crate::slices::PySlices;
     #[pymodule_export]

@@ -88,9 +88,8 @@ impl PyObjective {
 
     /// Lengths of the axes ``[frame, y, x, sample, dim]`` of the points.
     #[getter]
-    fn shape(&self) -> [usize; 5] {
-        let Extent { frames, height, width, spp } = self.objective.extent();
-        [frames, height, width, spp, self.objective.dims()]
+    fn shape(&self) -> (usize, usize, usize, usize, usize) {
+        self.lengths().into()
     }
 
     /// The configuration.
@@ -200,7 +199,9 @@ impl PyObjective {
         if self.groups != slices.groups {
             return Err(refused("slices of another objective: draw them from this one"));
         }
-        self.find(py, points, |points| self.objective.value_and_gradient(points, &slices.slices))
+        self.find(py, points, |points, observe| {
+            self.objective.value_and_gradient_observed(points, &slices.slices, observe)
+        })
     }
 
     /// All slices at once, in closed form: the squared sliced Cramér distance between filtered samples and
@@ -224,11 +225,11 @@ impl PyObjective {
     ///     A term that descends and has no closed form: one of other classes than a lattice's or a pixel's,
     ///     on a torus, or with a target of its own.
     fn cramer<'py>(&self, py: Python<'py>, points: &Bound<'py, PyAny>) -> PyResult<Found<'py>> {
-        self.find(py, points, |points| self.objective.cramer(points))
+        self.find(py, points, |points, observe| self.objective.cramer_observed(points, observe))
     }
 
     fn __repr__(&self) -> String {
-        let [frames, height, width, spp, dims] = self.shape();
+        let [frames, height, width, spp, dims] = self.lengths();
         let terms = self.groups.of_terms.len();
         format!("<Objective of {terms} terms for [{frames}, {height}, {width}, {spp}, {dims}]>")
     }
@@ -250,6 +251,7 @@ impl PyObjective {
     }
 }
 
+type Observe<'a> = &'a dyn Fn(f64) -> ControlFlow<()>;
 type Found<'py> = (f64, Bound<'py, PyArrayDyn<f64>>);
 type Parts = (PyConfig, Option<PyDemand>, Option<usize>);
 
@@ -258,12 +260,18 @@ impl PyObjective {
         &self,
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
-        of: impl Fn(&[f64]) -> Result<ValueAndGradient, ObjectiveError> + Sync,
+        of: impl Fn(&[f64], Observe<'_>) -> Result<ValueAndGradient, ObjectiveError> + Sync,
     ) -> PyResult<Found<'py>> {
         let Numbers { shape, values } = Numbers::<f64>::of(points)?;
         self.check_shape(&shape)?;
-        let found = detached(py, self.threads, || of(&values))?;
-        if let Some(exception) = raised(&self.config.0) {
+        let work = |caller: &Caller<'_, ()>| {
+            of(&values, &|_| match caller.wants_an_end() {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            })
+        };
+        let (found, exception) = watched(py, self.threads, work, |_| Ok(()))?;
+        if let Some(exception) = exception.or_else(|| raised(&self.config.0)) {
             return Err(exception);
         }
         let ValueAndGradient { value, gradient } = found.python()?;
@@ -271,9 +279,14 @@ impl PyObjective {
         Ok((value, to_numpy(py, gradient)))
     }
 
+    fn lengths(&self) -> [usize; 5] {
+        let Extent { frames, height, width, spp } = self.objective.extent();
+        [frames, height, width, spp, self.objective.dims()]
+    }
+
     /// Refuses other arrangements of as many numbers.
     fn check_shape(&self, given: &[usize]) -> PyResult<()> {
-        let of_table = self.shape();
+        let of_table = self.lengths();
         let (all, dims) = (of_table.iter().product(), of_table[4]);
         let samples = of_table[..4].iter().product();
         let long = |shape: &[usize]| shape.iter().copied().filter(|&len| len != 1).collect::<Vec<_>>();

@@ -47,6 +47,9 @@ pub enum ObjectiveError {
         /// What is wrong with it.
         problem: SliceError,
     },
+    /// Whoever watched broke off.
+    #[error("value and gradient were stopped half-way: let them continue to their end")]
+    Stopped,
 }
 
 /// A slice that does not fit its objective.

@@ -1,5 +1,7 @@
 //! The value and gradient of slices, in `f64`, as the textbook writes it.
 
+use std::ops::ControlFlow;
+
 use rayon::prelude::*;
 
 use super::Objective;
@@ -79,6 +81,41 @@ impl Objective {
         points: &[f64],
         slices: &[Slice],
     ) -> Result<ValueAndGradient, ObjectiveError> {
+        self.value_and_gradient_observed(points, slices, |_| ControlFlow::Continue(()))
+    }
+
+    /// The same, for whoever waits: `observe` is called from time to time with the share that is done, and
+    /// may break off.
+    ///
+    /// # Errors
+    /// As [`Objective::value_and_gradient`]; [`ObjectiveError::Stopped`] if `observe` breaks off.
+    ///
+    /// ```
+    /// use std::ops::ControlFlow;
+    ///
+    /// use fsot::config::Role;
+    /// use fsot::objective::ObjectiveError;
+    /// use fsot::{Config, Extent, Objective};
+    ///
+    /// let objective = Objective::new(&Config::new(Extent::still(8, 8), 2))?;
+    /// let (points, mut shares) = (vec![0.5; 128], Vec::new());
+    /// let slices = objective.draw(7, 0, Role::Descend);
+    /// let found = objective.value_and_gradient_observed(&points, &slices, |share| {
+    ///     shares.push(share);
+    ///     ControlFlow::Continue(())
+    /// })?;
+    /// assert_eq!(found, objective.value_and_gradient(&points, &slices)?);
+    /// assert!(shares[0] == 0.0 && shares.is_sorted());
+    /// let stopped = objective.value_and_gradient_observed(&points, &slices, |_| ControlFlow::Break(()));
+    /// assert_eq!(stopped, Err(ObjectiveError::Stopped));
+    /// # Ok::<(), ObjectiveError>(())
+    /// ```
+    pub fn value_and_gradient_observed(
+        &self,
+        points: &[f64],
+        slices: &[Slice],
+        mut observe: impl FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<ValueAndGradient, ObjectiveError> {
         self.check_points(points)?;
         for (index, slice) in slices.iter().enumerate() {
             self.check_slice(slice).map_err(|problem| ObjectiveError::Slice { slice: index, problem })?;
@@ -88,9 +125,12 @@ impl Objective {
         let (mut value, mut gradient) = (0.0, vec![0.0; points.len()]);
         let largest = self.terms.iter().flat_map(|term| term.family.sizes()).max().unwrap_or(1);
         let per_chunk = (MOST_TOUCHES / largest).clamp(1, 4096);
-        for (first, slices) in (0..).step_by(per_chunk).zip(slices.chunks(per_chunk)) {
-            let moved: Vec<_> = slices.par_iter().map(|slice| self.transport(points, slice)).collect();
-            for (slice, (number, moved)) in slices.iter().zip((first..).zip(moved)) {
+        for (first, chunk) in (0..).step_by(per_chunk).zip(slices.chunks(per_chunk)) {
+            if observe(first as f64 / slices.len() as f64).is_break() {
+                return Err(ObjectiveError::Stopped);
+            }
+            let moved: Vec<_> = chunk.par_iter().map(|slice| self.transport(points, slice)).collect();
+            for (slice, (number, moved)) in chunk.iter().zip((first..).zip(moved)) {
                 let refused = |problem| ObjectiveError::Slice { slice: number, problem };
                 let moved = moved.map_err(|problem| refused(problem.into()))?;
                 let dims = &self.terms[slice.term].spec.dims;

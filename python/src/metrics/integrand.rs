@@ -262,8 +262,8 @@ fn values_of(function: &Bound<'_, PyAny>, points: &Bound<'_, PyAny>) -> PyResult
     let Numbers { shape, values } = Numbers::<f64>::of(&function.call1((points,))?)?;
     if shape != [count] {
         return Err(refused(format!(
-            "the integrand returns an array of shape {shape:?} for {count} points: return one number for each, \
-             or wrap a function of one point, as in lambda points: [f(x) for x in points]"
+            "the integrand returns an array of shape {shape:?} for {count} points: return one number for \
+             each, or wrap a function of one point, as in lambda points: [f(x) for x in points]"
         )));
     }
     if let Some(number) = values.iter().position(|value| !value.is_finite()) {
