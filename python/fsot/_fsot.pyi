@@ -36,7 +36,6 @@ __all__ = [
     "glance_at_table",
     "import_table",
     "inspect_table",
-    "left_beside",
     "load_table",
     "mapped_table",
     "measure_bias",
@@ -483,7 +482,6 @@ def import_table(
 def load_table(
     path: _Path, metadata: bool
 ) -> tuple[NDArray[numpy.float32], dict[str, Any] | None]: ...
-def left_beside(path: _Path) -> pathlib.Path | None: ...
 def check_table(array: ArrayLike) -> None: ...
 def command(arguments: Sequence[str]) -> int: ...
 

@@ -79,9 +79,11 @@ class Table:
             Metadata of other values than these, or with parts that would be lost.
         """
         _fsot.save_table(path, self._array, self._metadata or None)
-        if not self._metadata and (beside := _fsot.left_beside(path)) is not None:
+        beside = pathlib.Path(path).with_suffix(".json")
+        if not self._metadata and beside.exists():
             warnings.warn(
-                f"{beside} is of another table: delete it, or load this one with metadata=False", stacklevel=2
+                f"{beside} is not of this table: delete it, or load the table with metadata=False",
+                stacklevel=2,
             )
 
     @classmethod
@@ -301,7 +303,7 @@ class Table:
             ending = pathlib.PurePath(path).suffix.lower()
             if ending not in _FORMATS:
                 known = ", ".join(_FORMATS)
-                raise ValueError(f"no format is known by the ending of {path}: give format=, or one of {known}")
+                raise ValueError(f"the ending of {path} names no format: give format=, or one of {known}")
             format = _FORMATS[ending]
         depth = None if bits is None else str(bits)
         files, record_path, record = _fsot.export_table(path, self._array, format, depth, rounding, name)
@@ -309,6 +311,10 @@ class Table:
 
     def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
         return numpy.array(self._array, dtype=dtype, copy=copy)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # By what makes it: an array that is read alone can be written to.
+        return type(self), (self._array, self._metadata)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Table) and numpy.array_equal(self._array, other._array)

@@ -1,12 +1,12 @@
 """What a table is worth: filtered error, bias, uniformity and spectra.
 
-Every figure that can be one is a *ratio to white noise*: 1 means as good as independent random numbers in a table
-of the same shape, 0 means no error. The denominator is the analytic expectation, never a draw.
+Every figure that can be one is a *ratio to white noise*: 1 means as good as independent random numbers in a
+table of the same shape, 0 means no error. The denominator is the analytic expectation, never a draw.
 
-Samples are a `fsot.Table`, an array ``[frame, y, x, sample, dim]`` or points ``[point, dim]``, float32 or float64,
-of values in ``[0, 1)``. ``dims`` are the dimensions that are used together, in the order of the integrand's
-coordinates; all, if they are left out. Results are small objects that do not change; ``to_dict()`` gives their
-figures under names of their own, so that a row of a study is
+Samples are a `fsot.Table`, an array ``[frame, y, x, sample, dim]`` or points ``[point, dim]``, float32 or
+float64, of values in ``[0, 1)``. ``dims`` are the dimensions that are used together, in the order of the
+integrand's coordinates; all, if they are left out. Results are small objects that do not change;
+``to_dict()`` gives their figures under names of their own, so that a row of a study is
 
 >>> import fsot
 >>> table = fsot.table(16, 16, sweeps=10, progress=False)
@@ -15,21 +15,21 @@ figures under names of their own, so that a row of a study is
 >>> error.spatial.mean == row["error_spatial"]
 True
 
-=============================================================================  ==================================
-how large is the error that the eye sees?                                      `filtered_error`
-what is the objective worth, with exact distances?                             `bound`
-does the table, a frame, a pixel estimate integrals too high or too low?       `bias`
-are the samples spread evenly over the square?                                 `histogram`, `discrepancy`
-... and every single coordinate, up to its faces?                              `marginal`
-what is the error of a prefix, of a class, of a point set?                     `set_error`
-do points follow a picture?                                                    `density_match`
-how far is a point set from its target?                                        `sliced_distance`
-at which frequencies is the error, and does it prefer a direction?             `spectra`
-what is the error of each pixel, for one integrand?                            `error_image`
-=============================================================================  ==================================
+==========================================================================  ============================
+how large is the error that the eye sees?                                   `filtered_error`
+what is the objective worth, with exact distances?                          `bound`
+does the table, a frame, a pixel estimate integrals too high or too low?    `bias`
+are the samples spread evenly over the square?                              `histogram`, `discrepancy`
+... and every single coordinate, up to its faces?                           `marginal`
+what is the error of a prefix, of a class, of a point set?                  `set_error`
+do points follow a picture?                                                 `density_match`
+how far is a point set from its target?                                     `sliced_distance`
+at which frequencies is the error, and does it prefer a direction?          `spectra`
+what is the error of each pixel, for one integrand?                         `error_image`
+==========================================================================  ============================
 
-Work runs without the interpreter's lock, on ``threads`` threads (one a core by default); results do not depend
-on their number.
+Work runs without the interpreter's lock, on ``threads`` threads (one a core by default); results do not
+depend on their number.
 """
 
 from __future__ import annotations
@@ -179,8 +179,8 @@ def bound(
     samples : Table or array_like
         Of the shape that the configuration has.
     objective : Config or Objective, optional
-        Whose bound it is; by default that of the usual objective for samples of this shape and `kernel`, as in
-        ``fsot inspect``.
+        Whose bound it is; by default that of the usual objective for samples of this shape and `kernel`, as
+        in ``fsot inspect``.
     kernel : Kernel, optional
         The filter of the usual objective: see `filtered_error`.
     slices : int
@@ -201,8 +201,10 @@ def spectra(
     integrands: Integrands | None = None,
     threads: int | None = None,
 ) -> Spectra:
-    """Power spectra of the error in x and y, and in x and t, averaged over integrands, each relative to its own
-    white noise. Parameters as of `filtered_error`."""
+    """Power spectra of the error in x and y, and in x and t, averaged over integrands.
+
+    Each is relative to its own white noise. Parameters as of `filtered_error`.
+    """
     return _spectra(_fsot.measure_spectra(samples, dims, integrands, threads))
 
 
@@ -214,7 +216,8 @@ def spectra_of_image(errors: ArrayLike, variance: float | None = None) -> Spectr
     errors : array_like
         Finite numbers.
     variance : float, optional
-        That of a pixel in white noise; the image's own mean square by default, which looks at the shape alone.
+        That of a pixel in white noise; the image's own mean square by default, which looks at the shape
+        alone.
     """
     return _spectra(_fsot.spectra_of_image(errors, variance))
 
@@ -243,14 +246,20 @@ def histogram(
     *,
     threads: int | None = None,
 ) -> Histogram:
-    """Counts the samples of two dimensions in equal cells, 1 to 4096 a side. Expect at least 5 samples a cell."""
+    """Counts the samples of two dimensions in equal cells, 1 to 4096 a side.
+
+    Expect at least 5 samples a cell.
+    """
     counts, spread = _fsot.measure_histogram(samples, dims, cells_per_side, threads)
     return Histogram(counts.reshape(cells_per_side, cells_per_side), spread)
 
 
 def discrepancy(samples: Samples, *, dims: Dims = None, threads: int | None = None) -> Discrepancy:
-    """Squared L2-star discrepancy of a frame, by Warnock's formula; the work grows by the square of the samples
-    of a frame: 64 × 64 take some 10 ms, 256 × 256 some 5 s of a core."""
+    """Squared L2-star discrepancy of a frame, by Warnock's formula.
+
+    The work grows by the square of the samples of a frame, and nothing interrupts it: 64 × 64 take some
+    10 ms, 256 × 256 some 5 s of a core.
+    """
     return Discrepancy(*_fsot.measure_discrepancy(samples, dims, threads))
 
 

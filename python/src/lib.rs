@@ -75,7 +75,7 @@ mod _fsot {
     #[pymodule_export]
     use crate::step::PyStep;
     #[pymodule_export]
-    use crate::tables::{check_table, displacement, left_beside, load_table, save_table};
+    use crate::tables::{check_table, displacement, load_table, save_table};
     #[pymodule_export]
     use crate::target::PyTarget;
     #[pymodule_export]

@@ -120,13 +120,6 @@ pub fn load_table(
     Ok((table_to_numpy(py, table)?, json::to_python(py, &metadata)?))
 }
 
-/// Where metadata lie beside a table that does not have any: those of another.
-#[pyfunction]
-pub fn left_beside(path: PathBuf) -> Option<PathBuf> {
-    let beside = Metadata::path_beside(&path);
-    Metadata::load(&path).is_ok().then_some(beside)
-}
-
 /// Refuses what is no table.
 #[pyfunction]
 pub fn check_table(array: &Bound<'_, PyAny>) -> PyResult<()> {

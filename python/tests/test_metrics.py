@@ -164,6 +164,14 @@ def test_a_grid_fills_its_cells_evenly():
     assert metrics.histogram([[0.1, 0.9]], cells_per_side=2).counts.tolist() == [[0, 0], [1, 0]]
 
 
+def test_the_bias_of_a_grid_is_off_by_a_share_of_a_column():
+    # 5 of 16 columns have x < 0.3, and a linear function is exact.
+    edge = Integrand(lambda x: x[:, 0] < 0.3, 2, 0.3, 0.21)
+    found = metrics.bias(grid(16), integrands=Integrands({"edge": [edge], "linear": [linear()]}))
+    assert found.table.families["edge"].mean == pytest.approx(256 * 0.0125**2 / 0.21, rel=1e-9)
+    assert found.table.families["linear"].mean == pytest.approx(0, abs=1e-20)
+
+
 def test_white_noise_is_one():
     noise = numpy.random.default_rng(7).random((1, 64, 64, 1, 2), dtype=numpy.float32)
     error = metrics.filtered_error(noise)

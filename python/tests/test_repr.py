@@ -128,6 +128,8 @@ def test_words_are_escaped():
     assert "<script" not in page and "<img src=x" not in page and "&lt;script" in page
 
 
-@pytest.mark.parametrize("metadata", [{"run": None}, {"run": []}, {"run": {"steps": 3, "seconds": "NaN"}}, {"seed": 1}])
+@pytest.mark.parametrize(
+    "metadata", [{"run": None}, {"run": []}, {"run": {"steps": 3, "seconds": "NaN"}}, {"seed": 1}]
+)
 def test_odd_metadata_are_no_obstacle(metadata):
     assert "<b>1 frame, 2 x 2 pixels" in fsot.Table(numpy.zeros((1, 2, 2, 1, 1)), metadata)._repr_html_()

@@ -154,7 +154,8 @@ def test_figures_of_a_run_are_those_of_the_command(command, tmp_path):
 def test_the_filter_is_the_command_s(command, tmp_path):
     table = white(3, 8, 8, 1, 2)
     table.save(tmp_path / "white.npy")
-    said = command("inspect", "white.npy", "--sigma", 1.3, "--temporal", "ema:0.2", "--integrands", 4, "--json")
+    flags = ["--sigma", 1.3, "--temporal", "ema:0.2", "--integrands", 4]
+    said = command("inspect", "white.npy", *flags, "--json")
     kernel = fsot.Kernel.gaussian(1.3, temporal="ema:0.2")
     found = table.inspect(kernel=kernel, integrands=4, name="white.npy", nested=True)
     assert found == json.loads(said.stdout)
@@ -199,7 +200,8 @@ def without_commands(page):
 
 def test_a_page_is_that_of_the_command(command, tmp_path):
     command("table", "--width", 16, "--height", 16, "--frames", 2, "--sweeps", 2, "--quiet")
-    command("report", "table.npy", "--png", "theirs.png", "--out", "theirs.html", "--integrands", 8, "--quiet")
+    files = ["--png", "theirs.png", "--out", "theirs.html"]
+    command("report", "table.npy", *files, "--integrands", 8, "--quiet")
     table = fsot.Table.load(tmp_path / "table.npy")
     table.report(tmp_path / "ours.html", png=tmp_path / "ours.png", label="table.npy", integrands=8)
     assert (tmp_path / "ours.png").read_bytes() == (tmp_path / "theirs.png").read_bytes()
@@ -244,10 +246,12 @@ def test_notes_are_kept(tmp_path):
     table.metadata["seeds"] = 2**64 - 1
     table.save(path)
     again = fsot.Table.load(path)
-    assert again == table and again.metadata["scene"] == {"name": "kitchen", "spp": [1, 2.5, None], "mean": 0.5}
+    scene = {"name": "kitchen", "spp": [1, 2.5, None], "mean": 0.5}
+    assert again == table and again.metadata["scene"] == scene
     assert again.metadata["seeds"] == 2**64 - 1
     again.save(path)
-    assert fsot.Table.load(path).metadata == again.metadata == json.loads(path.with_suffix(".json").read_text())
+    assert fsot.Table.load(path).metadata == again.metadata
+    assert json.loads(path.with_suffix(".json").read_text()) == again.metadata
 
 
 def test_a_table_may_have_nothing_but_notes(tmp_path):
@@ -322,7 +326,7 @@ def test_foreign_metadata_are_refused_in_the_library_s_words(tmp_path, command):
     first = fsot.table(8, 8, sweeps=2, progress=False)
     first.save(path)
     other = white(1, 8, 8, 1, 2)
-    with pytest.warns(UserWarning, match="of another table: delete it"):
+    with pytest.warns(UserWarning, match="is not of this table: delete it"):
         other.save(path)
     with pytest.raises(ValueError) as refusal:
         fsot.Table.load(path)
@@ -341,5 +345,6 @@ def test_tables_travel():
     table = fsot.table(8, 8, sweeps=2, progress=False)
     again = pickle.loads(pickle.dumps(table))
     assert again == table and again.metadata == table.metadata
+    assert not again.array.flags.writeable
     again.metadata["note"] = 1
     assert "note" not in table.metadata

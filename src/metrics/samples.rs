@@ -95,8 +95,8 @@ impl<'a> Samples<'a> {
         Ok(Self { extent: Extent::points(values.len() / dims), dims, values: values.into() })
     }
 
-    /// The same samples on a lattice of pixels and frames, in its order: those of a table in double precision,
-    /// say. O(1).
+    /// The same samples on a lattice of pixels and frames, in its order: those of a table in double
+    /// precision, say. O(1).
     ///
     /// ```
     /// use fsot::Extent;

@@ -46,7 +46,7 @@ fn metadata_come_back_whole() {
 fn notes_come_back_beside_what_is_known() {
     let home = tempdir().unwrap();
     let path = home.path().join("table.npy");
-    let table = table();
+    let table = table(2);
     let mut noted = metadata(&table);
     noted.notes.insert("scene".into(), serde_json::json!({ "name": "kitchen", "spp": [1, 4.5, null] }));
     noted.notes.insert("seeds".into(), u64::MAX.into());

@@ -11,7 +11,8 @@ use super::sheet::{Cell, row};
 use crate::Failure;
 use crate::draw::raster::Grey;
 
-/// Pixels per side of a picture at most: pictures of noise compress badly, and a sheet shall take less than 100 kB.
+/// Pixels per side of a picture at most: pictures of noise compress badly, and a sheet shall take less than
+/// 100 kB.
 const LARGEST_SIDE: usize = 96;
 
 /// Samples of a frame that are looked at.

@@ -88,8 +88,8 @@ impl PyIntegrand {
         let (integral, variance) = match (integral, variance) {
             (Some(integral), Some(variance)) => (integral, variance),
             (None, None) => {
-                let points = halton(py, dims, points.0)?;
-                let values = values_of(&function, &to_numpy(py, points).into_any())?;
+                let points = read_only(py, halton(py, dims, points.0)?)?;
+                let values = values_of(&function, &points)?;
                 let count = values.len() as f64;
                 let mean = values.iter().sum::<f64>() / count;
                 (mean, values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count)
@@ -147,7 +147,7 @@ impl PyIntegrand {
             }
             Source::Own(own) => {
                 let points = Array2::from_shape_vec((shape[0], dims), values).expect("as they came");
-                values_of(own.function.bind(py), &to_numpy(py, points).into_any())?
+                values_of(own.function.bind(py), &read_only(py, points)?)?
             }
         };
         Ok(PyArray1::from_vec(py, values))
@@ -244,11 +244,16 @@ impl Listed {
         let Some(points) = points else { return Ok(Self { points: None, numbers: Arc::default() }) };
         let key = |point: ndarray::ArrayView1<'_, f64>| point.iter().map(|x| x.to_bits()).collect();
         let numbers = points.outer_iter().enumerate().map(|(number, point)| (key(point), number)).collect();
-        let points = to_numpy(py, points).into_any();
-        // Every function gets the same ones.
-        points.getattr("flags")?.setattr("writeable", false)?;
+        let points = read_only(py, points)?;
         Ok(Self { points: Some(points.unbind()), numbers: Arc::new(numbers) })
     }
+}
+
+/// Points that no function can change: others get them as well.
+fn read_only(py: Python<'_>, points: Array2<f64>) -> PyResult<Bound<'_, PyAny>> {
+    let points = to_numpy(py, points).into_any();
+    points.getattr("flags")?.setattr("writeable", false)?;
+    Ok(points)
 }
 
 /// Calls a function of Python's with points `[point, dim]`.
@@ -257,8 +262,8 @@ fn values_of(function: &Bound<'_, PyAny>, points: &Bound<'_, PyAny>) -> PyResult
     let Numbers { shape, values } = Numbers::<f64>::of(&function.call1((points,))?)?;
     if shape != [count] {
         return Err(refused(format!(
-            "the integrand returns an array of shape {shape:?} for {count} points: return one number for each, \
-             or wrap a function of one point, as in lambda points: [f(x) for x in points]"
+            "the integrand returns an array of shape {shape:?} for {count} points: return one number for \
+             each, or wrap a function of one point, as in lambda points: [f(x) for x in points]"
         )));
     }
     if let Some(number) = values.iter().position(|value| !value.is_finite()) {
