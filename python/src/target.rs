@@ -85,7 +85,8 @@ impl PyTarget {
     /// dims : int
     ///     Number of dimensions.
     /// name : str
-    ///     Name for messages and metadata.
+    ///     Name for messages and metadata, which add a digest of an array. Functions should have names of
+    ///     their own, by which a checkpoint tells them apart.
     ///
     /// Examples
     /// --------
