@@ -1,17 +1,17 @@
-//! A kernel of one's own, tap by tap: the 3 × 3 tent of a cheap resolve, with the last two frames.
+//! A kernel of one's own, weight by weight: the 3 × 3 tent of a cheap resolve, with the last two frames.
 //!
 //! `cargo run --release --example own_kernel`
 
-use fsot::kernel::{SpatialKernel, SpatialTap, TemporalKernel};
+use fsot::kernel::TemporalKernel;
 use fsot::metrics::{FilteredError, Integrands, MeasureError};
 use fsot::{Config, Extent, Kernel, Until};
+use ndarray::array;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let weight = |dy: i32, dx: i32| f64::from((2 - dy.abs()) * (2 - dx.abs()));
-    let taps = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| SpatialTap { dy, dx, weight: weight(dy, dx) }));
-    let tent = SpatialKernel::Taps(taps.collect());
+    let tent = array![[1.0, 2.0, 1.0], [2.0, 4.0, 2.0], [1.0, 2.0, 1.0]];
     // The current frame first.
-    let kernel = Kernel::product(tent, TemporalKernel::Taps(vec![0.5, 0.3, 0.2]));
+    let history = TemporalKernel::Taps(vec![0.5, 0.3, 0.2]);
+    let kernel = Kernel::from_weights(tent.view())?.with_temporal(history);
 
     let extent = Extent::animation(8, 32, 32);
     // The tap that weighs most is 1.

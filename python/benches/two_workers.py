@@ -3,8 +3,8 @@
     python benches/two_workers.py [GRID.toml]
 
 Runs the sample study in one process, on two workers, and on two workers of which one is killed in the middle.
-Fails if a row is missing, or says other values than the one that the single process has made. Prints wall times,
-their ratios, the processor time of each and the load of the machine, which should be idle before.
+Fails if a row is missing, or says other values than the one that the single process has made. Prints wall
+times, their ratios, the processor time of each and the load of the machine, which should be idle before.
 """
 
 from __future__ import annotations
@@ -36,11 +36,10 @@ def main() -> None:
     """Measures, compares, prints."""
     toml = Path(sys.argv[1]) if len(sys.argv) > 1 else EXAMPLES / "study.toml"
     tables = len(grid.read(toml).tasks)
-    # Workers are children that outlive no run: their time is the run's.
-    print(f"{tables} tables of {toml.name}; load before {os.getloadavg()[0]:.2f}")
+    print(f"{tables} tables of {toml.name}; load before {os.getloadavg()[0]:.2f}", flush=True)
     with tempfile.TemporaryDirectory() as folder:
         expected, serial = _run(toml, Path(folder, "serial.csv"), ["--serial"])
-        print(f"in one process          {serial:6.1f} s")
+        print(f"in one process          {serial:6.1f} s", flush=True)
         for name, kills in (("two workers", False), ("two workers, one killed", True)):
             rows, seconds = _run(
                 toml, Path(folder, f"{name}.csv"), ["--workers", "2"], tables // 2 if kills else 0
@@ -52,7 +51,8 @@ def main() -> None:
             assert processes == 2 + kills, f"rows are of {processes} processes"
             share = sum(row["task_seconds"] for row in rows.values()) / seconds
             print(
-                f"{name:23} {seconds:6.1f} s, {serial / seconds:.2f} times as fast; {share:.2f} tables at a time"
+                f"{name:23} {seconds:6.1f} s, {serial / seconds:.2f} times as fast, {share:.2f} at a time",
+                flush=True,
             )
     print(f"all rows are the same, to the last bit; load after {os.getloadavg()[0]:.2f}")
 
@@ -60,6 +60,7 @@ def main() -> None:
 def _run(toml: Path, out: Path, where: list[str], kill_after: int = 0) -> tuple[dict[str, Row], float]:
     """Rows and seconds of a study, whose last worker to have finished a table is killed after so many."""
     command = [sys.executable, str(EXAMPLES / "study.py"), str(toml), "--out", str(out), "--no-plot", *where]
+    # Workers are children that outlive no run: their time is the run's.
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     began = time.perf_counter()
     with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as study:

@@ -35,6 +35,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except StudyError as error:
         print(f"study: {error}", file=sys.stderr)
         return 1
+    except OSError as error:
+        print(f"study: {error}: rows that were written are kept; mend that and start again", file=sys.stderr)
+        return 1
     except KeyboardInterrupt:
         print("study: ended early; what is done is kept, and the same command goes on", file=sys.stderr)
         return 130
@@ -65,8 +68,12 @@ def _study(options: argparse.Namespace) -> int:
         print(f"failed: {task.labels}: {kept.latest[task.key]['message']}", file=sys.stderr)
     if failed:
         print(f"{len(failed)} tables failed; the same command tries them again", file=sys.stderr)
-    if not options.no_plot and len(failed) < len(study.tasks):
-        _draw(study, kept.latest, out)
+    if not options.no_plot:
+        try:
+            _draw(study, kept.latest, out)
+        except StudyError as error:
+            # What was asked for is there.
+            print(f"no picture: {error}", file=sys.stderr)
     return 1 if failed else 0
 
 

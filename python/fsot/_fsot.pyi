@@ -1,6 +1,7 @@
 """Types of the compiled half of the package; its documentation is in the sources of that half."""
 
 import os
+import pathlib
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, ClassVar, TypeAlias, final
 
@@ -14,6 +15,8 @@ __all__ = [
     "Classes",
     "Config",
     "Demand",
+    "Integrand",
+    "Integrands",
     "Kernel",
     "Objective",
     "Optimizer",
@@ -27,8 +30,34 @@ __all__ = [
     "check_table",
     "command",
     "configure",
+    "displacement",
+    "draw_points",
+    "export_table",
+    "glance_at_table",
+    "import_table",
+    "inspect_table",
+    "left_beside",
     "load_table",
+    "mapped_table",
+    "measure_bias",
+    "measure_bound",
+    "measure_density_match",
+    "measure_discrepancy",
+    "measure_error_image",
+    "measure_filtered_error",
+    "measure_histogram",
+    "measure_marginal",
+    "measure_set_error",
+    "measure_sliced_distance",
+    "measure_spectra",
+    "plan_classes",
+    "plan_color_stippling",
+    "plan_progressive",
+    "plan_stippling",
+    "report_tables",
+    "save_points",
     "save_table",
+    "spectra_of_image",
     "until",
 ]
 
@@ -42,6 +71,9 @@ _Path: TypeAlias = str | os.PathLike[str]
 _Schedule: TypeAlias = float | Sequence[float] | NDArray[numpy.floating] | dict[str, Any]
 _Shape: TypeAlias = tuple[int, int, int, int, int]
 _Temporal: TypeAlias = str | ArrayLike
+_Taken: TypeAlias = tuple[
+    str, str, list[int], list[str], int | None, int, int, list[int], pathlib.Path | None
+]
 
 @final
 class Until:
@@ -69,13 +101,22 @@ class Until:
 @final
 class Kernel:
     __hash__: ClassVar[None]  # type: ignore[assignment]
+    def __new__(
+        cls, weights: ArrayLike, *, temporal: _Temporal | None = None, truncation: float = 1e-3
+    ) -> Self: ...
     @staticmethod
-    def gaussian(sigma: float = 2.1, *, temporal: _Temporal | None = None) -> Kernel: ...
+    def gaussian(
+        sigma: float = 2.1, *, temporal: _Temporal | None = None, truncation: float = 1e-3
+    ) -> Kernel: ...
     @staticmethod
-    def box_(size: int, *, temporal: _Temporal | None = None) -> Kernel: ...
+    def box_(size: int, *, temporal: _Temporal | None = None, truncation: float = 1e-3) -> Kernel: ...
     @staticmethod
-    def binomial(size: int, *, temporal: _Temporal | None = None) -> Kernel: ...
+    def binomial(size: int, *, temporal: _Temporal | None = None, truncation: float = 1e-3) -> Kernel: ...
+    @property
+    def truncation(self) -> float: ...
     def with_temporal(self, temporal: _Temporal) -> Kernel: ...
+    def with_truncation(self, truncation: float) -> Kernel: ...
+    def separate(self) -> list[Kernel]: ...
     def taps(self, width: int = 64, height: int = 64, frames: int = 1) -> NDArray[numpy.float64]: ...
     def to_dict(self) -> dict[str, Any]: ...
     @staticmethod
@@ -386,6 +427,7 @@ class Optimizer:
         callback: Callable[[Step], bool | None] | None,
         progress: Callable[[Step], None] | None,
     ) -> tuple[Report, BaseException | None]: ...
+    def _record(self) -> dict[str, Any]: ...
     def _table(self) -> tuple[NDArray[numpy.float32], dict[str, Any]]: ...
 
 def configure(
@@ -397,14 +439,52 @@ def configure(
     *,
     sigma: float | None,
     temporal: _Temporal | None,
-    kernel: Kernel | None,
+    kernel: Kernel | ArrayLike | None,
     groups: Sequence[_Group] | None,
     domain: _Domain | None,
     seed: int,
 ) -> Config: ...
 def until(seconds: float | None, sweeps: int | None, slices: int | None) -> Until: ...
 def save_table(path: _Path, array: ArrayLike, metadata: dict[str, Any] | None) -> None: ...
-def load_table(path: _Path) -> tuple[NDArray[numpy.float32], dict[str, Any] | None]: ...
+def displacement(height: int, width: int, use_number: int) -> tuple[int, int]: ...
+def mapped_table(array: ArrayLike, mapping: str, dims: Sequence[int]) -> NDArray[numpy.float32]: ...
+def glance_at_table(array: NDArray[numpy.float32]) -> tuple[bytes, list[tuple[str, bytes]]]: ...
+def inspect_table(
+    name: str,
+    array: ArrayLike,
+    metadata: dict[str, Any] | None,
+    kernel: Kernel | None,
+    integrands: int,
+    slices: int,
+    seed: int,
+    threads: int | None,
+) -> dict[str, Any]: ...
+def report_tables(
+    html: _Path | None,
+    png: _Path | None,
+    tables: Sequence[tuple[str, ArrayLike, dict[str, Any] | None]],
+    kernel: Kernel | None,
+    integrands: int | None,
+    slices: int,
+    seed: int,
+    threads: int | None,
+) -> None: ...
+def export_table(
+    path: _Path, array: ArrayLike, format: str, bits: str | None, rounding: str, name: str | None
+) -> tuple[list[pathlib.Path], pathlib.Path, dict[str, Any]]: ...
+def import_table(
+    path: _Path,
+    axes: Sequence[str],
+    levels: int | None,
+    lengths: Sequence[int | None],
+    channels: int | None,
+    dtype: str | None,
+    array: str | None,
+) -> tuple[NDArray[numpy.float32], _Taken]: ...
+def load_table(
+    path: _Path, metadata: bool
+) -> tuple[NDArray[numpy.float32], dict[str, Any] | None]: ...
+def left_beside(path: _Path) -> pathlib.Path | None: ...
 def check_table(array: ArrayLike) -> None: ...
 def command(arguments: Sequence[str]) -> int: ...
 
@@ -412,6 +492,8 @@ def command(arguments: Sequence[str]) -> int: ...
 
 @final
 class Integrand:
+    @staticmethod
+    def _drawn(dims: int, seed: int, family: int, index: int) -> Integrand: ...
     def __new__(
         cls,
         function: Callable[[NDArray[numpy.float64]], ArrayLike],
@@ -432,6 +514,10 @@ class Integrand:
 @final
 class Integrands:
     def __new__(cls, families: dict[str, list[Integrand]]) -> Integrands: ...
+    @staticmethod
+    def _drawn(
+        dims: int, per_family: int, seed: int, others: dict[str, list[Integrand]]
+    ) -> Integrands: ...
     @staticmethod
     def random(dims: int = 2, per_family: int = 256, seed: int = 0) -> Integrands: ...
     def with_family(self, name: str, integrands: Sequence[Integrand]) -> Integrands: ...
@@ -466,7 +552,7 @@ def measure_set_error(
 ) -> _OfFamilies: ...
 def measure_bound(
     samples: ArrayLike,
-    config: Config | None,
+    aim: Config | Objective | None,
     kernel: Kernel | None,
     slices: int,
     seed: int,
@@ -487,8 +573,49 @@ def measure_histogram(
 ) -> tuple[NDArray[numpy.uint64], float]: ...
 def measure_discrepancy(samples: ArrayLike, dims: _Dims | None, threads: int | None) -> tuple[float, float]: ...
 def measure_sliced_distance(
-    samples: ArrayLike, dims: _Dims | None, target: Any, directions: int, threads: int | None
+    samples: ArrayLike, dims: _Dims | None, target: Target | ArrayLike | None, directions: int, threads: int | None
 ) -> float: ...
 def measure_density_match(
-    samples: ArrayLike, density: ArrayLike, sigma: float, dims: Sequence[int], threads: int | None
+    samples: ArrayLike, density: Target | ArrayLike, sigma: float, dims: Sequence[int], threads: int | None
 ) -> tuple[tuple[float, int], tuple[float, int, int, int, int, float]]: ...
+_Labels: TypeAlias = NDArray[numpy.uint32] | None
+_Picture: TypeAlias = ArrayLike | _Path
+_Plan: TypeAlias = tuple[Config, _Labels, int, float]
+
+def plan_classes(
+    counts: Sequence[int],
+    dims: int,
+    subsets: str | Sequence[Sequence[int]],
+    domain: _Domain | None,
+    seed: int,
+) -> _Plan: ...
+def plan_progressive(
+    count: int,
+    dims: int,
+    lengths: str | Sequence[int | tuple[int, float]],
+    domain: _Domain | None,
+    seed: int,
+) -> _Plan: ...
+def plan_stippling(
+    picture: _Picture,
+    count: int,
+    tone: str,
+    transfer: str | None,
+    layer: str | None,
+    most_pixels: int | None,
+    limit_pixels: int,
+    seed: int,
+    threads: int | None,
+) -> _Plan: ...
+def plan_color_stippling(
+    picture: _Picture,
+    count: int,
+    transfer: str | None,
+    layer: str | None,
+    most_pixels: int | None,
+    limit_pixels: int,
+    seed: int,
+    threads: int | None,
+) -> _Plan: ...
+def save_points(path: _Path, points: ArrayLike, labels: ArrayLike | None, metadata: dict[str, Any]) -> None: ...
+def draw_points(points: ArrayLike, labels: ArrayLike | None, kind: str, aspect: float) -> bytes: ...

@@ -20,7 +20,7 @@ def table(
     *,
     sigma: float | None = None,
     temporal: str | ArrayLike | None = None,
-    kernel: _fsot.Kernel | None = None,
+    kernel: ArrayLike | _fsot.Kernel | None = None,
     groups: Sequence[Sequence[int] | tuple[Sequence[int], float]] | None = None,
     domain: str | list[str] | None = None,
     demand: _fsot.Demand | None = None,
@@ -53,8 +53,11 @@ def table(
         ``"perceptual:60"`` (the eye, at 60 frames per second), ``"gaussian:SIGMA"``, ``"box:N"``,
         ``"binomial:N"``, ``"none"``, or the weights of the current frame, the one before, and so on. The eye
         at 60 frames per second by default where there are several frames.
-    kernel : Kernel, optional
-        The whole filter, instead of ``sigma``.
+    kernel : array_like or Kernel, optional
+        The filter over pixels, instead of ``sigma``: weights ``[y, x]``, multiplied by ``temporal`` over
+        frames, or weights ``[t, y, x]``, the current frame first, which stand for ``temporal`` as well; see
+        `Kernel` for where they are centred. Not more of them than a frame has pixels, each way. A `Kernel` is
+        taken as it is, over frames too, unless it says nothing of those and ``temporal`` does.
     groups : sequence, optional
         Which dimensions the renderer uses together: lists of dimensions such as ``[[0, 1], [2]]``, or pairs
         of a list and its weight. Consecutive pairs by default, and all of them at half the weight.

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from . import _fsot
 from ._progress import bar
-from ._table import Table
+from ._table import Table, made
 
 
 class Interrupted(UserWarning):
@@ -80,7 +80,7 @@ class Optimizer(_fsot.Optimizer):
 
     def table(self) -> Table:
         """The table as it is now, with the metadata of the last run."""
-        return Table(*self._table())
+        return made(*self._table())
 
     def _follow(
         self,

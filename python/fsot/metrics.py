@@ -40,7 +40,7 @@ from typing import Any, TypeAlias
 from numpy.typing import ArrayLike
 
 from . import _fsot
-from ._fsot import Config, Integrand, Integrands, Kernel
+from ._fsot import Config, Integrand, Integrands, Kernel, Objective, Target
 from ._results import (
     AnisotropyRing,
     Bias,
@@ -165,7 +165,7 @@ def set_error(
 
 def bound(
     samples: Samples,
-    config: Config | None = None,
+    objective: Config | Objective | None = None,
     *,
     kernel: Kernel | None = None,
     slices: int = 16384,
@@ -178,9 +178,9 @@ def bound(
     ----------
     samples : Table or array_like
         Of the shape that the configuration has.
-    config : Config, optional
-        Whose objective it is; by default the usual one for samples of this shape and `kernel`, as in ``fsot
-        inspect``.
+    objective : Config or Objective, optional
+        Whose bound it is; by default that of the usual objective for samples of this shape and `kernel`, as in
+        ``fsot inspect``.
     kernel : Kernel, optional
         The filter of the usual objective: see `filtered_error`.
     slices : int
@@ -190,7 +190,7 @@ def bound(
     threads : int, optional
         Threads to work on.
     """
-    total, terms = _fsot.measure_bound(samples, config, kernel, slices, seed, threads)
+    total, terms = _fsot.measure_bound(samples, objective, kernel, slices, seed, threads)
     return Bound(*total, terms=tuple(BoundEstimate(*term) for term in terms))
 
 
@@ -258,7 +258,7 @@ def sliced_distance(
     samples: Samples,
     *,
     dims: Dims = None,
-    target: Any = None,
+    target: Target | ArrayLike | None = None,
     directions: int = 256,
     threads: int | None = None,
 ) -> float:
@@ -270,8 +270,8 @@ def sliced_distance(
         All count as one set.
     dims : sequence of int, optional
         Dimensions that are used together.
-    target : array_like, optional
-        A density ``[y, x]`` that the points should follow; the uniform cube by default.
+    target : Target or array_like, optional
+        What the points should follow, or a density ``[y, x]``; the uniform cube by default.
     directions : int
         Directions over which squares are averaged.
     threads : int, optional
@@ -288,7 +288,7 @@ def sliced_distance(
 
 def density_match(
     samples: Samples,
-    density: ArrayLike,
+    density: Target | ArrayLike,
     sigma: float = 0.02,
     *,
     dims: tuple[int, int] = (0, 1),
@@ -300,8 +300,8 @@ def density_match(
     ----------
     samples : Table or array_like
         Points: x to the right, y down.
-    density : array_like
-        ``[y, x]``, not negative.
+    density : Target or array_like
+        ``Target.density``, or numbers ``[y, x]`` that are not negative.
     sigma : float
         Standard deviation of the blur, in units of the picture's longer side, in ``(0, 1]``: about two
         distances between neighbouring points is what an eye blurs.

@@ -1,7 +1,7 @@
 //! The library's errors as Python's: its own sentences, in the kind that callers catch.
 
 use std::error::Error;
-use std::io;
+use std::io::{self, ErrorKind};
 
 use fsot::optimizer::CheckpointError;
 use pyo3::PyErr;
@@ -25,6 +25,11 @@ pub fn refused(sentence: impl ToString) -> PyErr {
     PyValueError::new_err(sentence.to_string())
 }
 
+/// A failure of the command's.
+pub fn failed(failure: &(dyn Error + Send + Sync + 'static)) -> PyErr {
+    exception(failure)
+}
+
 fn exception(error: &(dyn Error + 'static)) -> PyErr {
     match refusal_of_system(error) {
         Some(number) => PyOSError::new_err((number, error.to_string())),
@@ -39,7 +44,29 @@ fn refusal_of_system(error: &(dyn Error + 'static)) -> Option<i32> {
         return refusal_of_system(&**problem);
     }
     match error.downcast_ref::<io::Error>() {
-        Some(error) => error.raw_os_error(),
+        Some(error) => number_of(error),
         None => error.source().and_then(refusal_of_system),
+    }
+}
+
+/// A refusal of the system's, in these words.
+pub fn of_system(refusal: &io::Error, sentence: String) -> PyErr {
+    match number_of(refusal) {
+        Some(number) => PyOSError::new_err((number, sentence)),
+        None => PyOSError::new_err(sentence),
+    }
+}
+
+/// Its number, also of what the library found out itself before it asked the system.
+fn number_of(refusal: &io::Error) -> Option<i32> {
+    if let Some(number) = refusal.raw_os_error() {
+        return Some(number);
+    }
+    match refusal.kind() {
+        ErrorKind::NotFound => Some(2),
+        ErrorKind::PermissionDenied => Some(13),
+        ErrorKind::NotADirectory => Some(20),
+        ErrorKind::IsADirectory => Some(21),
+        _ => None,
     }
 }

@@ -13,8 +13,8 @@ use crate::json;
 
 /// A filter over pixels and frames, under which errors are to be small.
 ///
-/// Made of an array of weights, or by `gaussian`, `box_` and `binomial`. Plain data that does not change; what
-/// cannot filter is refused at once.
+/// Made of an array of weights, or by `gaussian`, `box_` and `binomial`. Plain data that does not change;
+/// what cannot filter is refused at once.
 ///
 /// Parameters
 /// ----------

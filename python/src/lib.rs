@@ -8,7 +8,9 @@ mod classes;
 mod config;
 mod counts;
 mod demand;
+mod drawing;
 mod errors;
+mod exchange;
 mod json;
 mod kernel;
 mod make;
@@ -16,6 +18,8 @@ mod metrics;
 mod objective;
 mod optimizer;
 mod own;
+mod picture;
+mod points;
 mod pool;
 mod settings;
 mod slices;
@@ -25,6 +29,7 @@ mod target;
 mod term;
 mod until;
 mod work;
+mod worth;
 
 #[pymodule]
 mod _fsot {
@@ -41,6 +46,10 @@ mod _fsot {
     use crate::config::PyConfig;
     #[pymodule_export]
     use crate::demand::PyDemand;
+    #[pymodule_export]
+    use crate::drawing::draw_points;
+    #[pymodule_export]
+    use crate::exchange::{export_table, import_table};
     #[pymodule_export]
     use crate::kernel::PyKernel;
     #[pymodule_export]
@@ -60,17 +69,21 @@ mod _fsot {
     #[pymodule_export]
     use crate::optimizer::{PyOptimizer, PyReport};
     #[pymodule_export]
+    use crate::points::{plan_classes, plan_color_stippling, plan_progressive, plan_stippling, save_points};
+    #[pymodule_export]
     use crate::slices::PySlices;
     #[pymodule_export]
     use crate::step::PyStep;
     #[pymodule_export]
-    use crate::tables::{check_table, load_table, save_table};
+    use crate::tables::{check_table, displacement, left_beside, load_table, save_table};
     #[pymodule_export]
     use crate::target::PyTarget;
     #[pymodule_export]
     use crate::term::PyTerm;
     #[pymodule_export]
     use crate::until::{Until, until};
+    #[pymodule_export]
+    use crate::worth::{glance_at_table, inspect_table, mapped_table, report_tables};
 
     /// Runs the command `fsot` with these arguments, and returns its exit code.
     #[pyfunction]

@@ -45,7 +45,7 @@ use crate::work::{Caller, detached, watched};
 #[pyclass(frozen, name = "Objective", module = "fsot", from_py_object)]
 #[derive(Clone, Debug)]
 pub struct PyObjective {
-    objective: Arc<Objective>,
+    pub objective: Arc<Objective>,
     pub groups: Arc<Groups>,
     config: PyConfig,
     demand: Option<PyDemand>,

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::{Mutex, MutexGuard, TryLockError};
 
-use fsot::files::Metadata;
+use fsot::files::{Metadata, RunRecord};
 use fsot::optimizer::StepReport;
 use fsot::{Config, ConfigError, Optimizer, RunReport, SampleTable};
 use pyo3::exceptions::PyRuntimeError;
@@ -211,6 +211,11 @@ impl PyOptimizer {
     /// Goes on from a checkpoint instead of what was reached: `finish` ends its run.
     fn resume(&self, checkpoint: &PyCheckpoint) -> PyResult<()> {
         self.state()?.optimizer.resume(checkpoint.0.clone()).python()
+    }
+
+    /// What the last run did, as in metadata.
+    fn _record<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        json::to_python(py, &self.state()?.report.as_ref().map(RunRecord::from))
     }
 
     /// The array of the table and its metadata.

@@ -1,78 +1,21 @@
-"""Studies: complete, resumable, the same wherever they are run, and safe from crashes."""
+"""Studies: complete, resumable, the rows of tables that anybody makes, and safe from crashes."""
 
 import csv
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
 import threading
 import time
-from pathlib import Path
 
 import numpy
 import pytest
+from study_tools import EXAMPLES, GRID, facts, lines, run, signals, study, toml  # noqa: F401
 
 import fsot
-
-pytest.importorskip("distributed")
-pytest.importorskip("filelock")
-EXAMPLES = Path(__file__).parents[1] / "examples"
-sys.path.insert(0, str(EXAMPLES))
-
-import study  # noqa: E402
-from studies import engines, grid, plot, results, task  # noqa: E402
-
-GRID = """
-[kernels]
-wide = { sigma = 2.1 }
-box = { box = 3 }
-[[grid]]
-kernel = ["wide", "box"]
-width = 16
-height = 8
-seeds = 3
-sweeps = [2, 8]
-[measure]
-integrands = 4
-slices = 64
-"""
-#: What a row says of a table, and not of where and when it was made.
-FACTS = [
-    column
-    for column in results.COLUMNS
-    if column not in ("seconds", "task_seconds", "finished", "host", "pid", "worker")
-]
-
-
-@pytest.fixture(autouse=True)
-def signals():
-    """The command takes SIGTERM for itself."""
-    before = signal.getsignal(signal.SIGTERM)
-    yield
-    signal.signal(signal.SIGTERM, before)
-
-
-@pytest.fixture
-def toml(tmp_path):
-    path = tmp_path / "small.toml"
-    path.write_text(GRID)
-    return path
-
-
-def run(toml, *arguments):
-    """The command, with a CSV file beside the grid."""
-    return study.main(
-        [str(toml), "--out", str(toml.with_suffix(".csv")), "--no-plot", "--serial", *arguments]
-    )
-
-
-def facts(path):
-    return {key: {column: row[column] for column in FACTS} for key, row in results.load(path).items()}
-
-
-def lines(toml):
-    return toml.with_suffix(".csv").read_bytes().count(b"\n")
+from studies import engines, grid, plot, results, task
 
 
 # Grids.
@@ -137,6 +80,8 @@ def test_frames_and_taps_are_filtered_as_usual(toml):
         ("[[grid]]\nkernel = { sigma = 1, box = 3 }", "2 shapes: give one of"),
         ('[[grid]]\nkernel = { taps = "nowhere.npy" }', "No such file"),
         ("[[grid]]\n[measure]\nintegrands = 0", "integrands is 0"),
+        ("[[grid]]\n[local]\nworkers = 0", "workers is 0: give a whole number"),
+        ("[[grid]]\n[slurm]\njobs = 1.5", "jobs is 1.5: give a whole number"),
         ("[[grid]]\n[measur]", "did you mean 'measure'"),
     ],
 )
@@ -144,7 +89,7 @@ def test_slips_are_told_before_anything_is_made(toml, capsys, text, sentence):
     toml.write_text(text)
     assert run(toml) == 1
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith("study: ") and __import__("re").search(sentence, line)
+    assert line.startswith("study: ") and re.search(sentence, line)
     assert not toml.with_suffix(".csv").exists()
 
 
@@ -270,6 +215,26 @@ def test_files_of_others_are_left_alone(toml, capsys):
         assert out.read_text() == text
 
 
+def test_a_full_disk_costs_half_a_line(toml, capsys):
+    assert run(toml) == 0
+    out = toml.with_suffix(".csv")
+    expected = facts(out)
+    room = len(out.read_bytes()) // 2
+    out.unlink()
+    script = f"import resource, sys; sys.path.insert(0, {str(EXAMPLES)!r}); import study\n"
+    script += f"resource.setrlimit(resource.RLIMIT_FSIZE, ({room}, {room})); sys.exit(study.main())"
+    arguments = [str(toml), "--out", str(out), "--serial", "--no-plot"]
+    done = subprocess.run(
+        [sys.executable, "-c", script, *arguments], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 1
+    assert "rows that were written are kept" in done.stderr and "Traceback" not in done.stderr
+    assert len(out.read_bytes()) == room
+    assert run(toml) == 0
+    assert "was cut" in capsys.readouterr().err
+    assert facts(out) == expected
+
+
 def test_two_studies_of_one_file_refuse_each_other(toml):
     out = toml.with_suffix(".csv")
     script = f"import sys; sys.path.insert(0, {str(EXAMPLES)!r}); from studies.results import *\n"
@@ -308,7 +273,7 @@ def test_a_study_that_is_ended_goes_on(toml, number):
         "--no-plot",
     ]
     process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
-    while not out.exists() or lines(toml) < 20:
+    while process.poll() is None and (not out.exists() or lines(toml) < 20):
         time.sleep(0.01)
     process.send_signal(number)
     assert "the same command goes on" in process.communicate()[1]
@@ -319,95 +284,6 @@ def test_a_study_that_is_ended_goes_on(toml, number):
     toml.write_text(GRID)
     assert run(toml) == 0
     assert lines(toml) >= done
-
-
-# Dask.
-
-
-@pytest.fixture(scope="module")
-def client():
-    with engines.local(2, tries=2) as client:
-        yield client
-
-
-def test_a_killed_worker_costs_its_table_only(client, toml, tmp_path):
-    assert run(toml) == 0
-    expected = facts(toml.with_suffix(".csv"))
-    gate = tmp_path / "gate"
-
-    def gated(work):
-        """From the fourth table on, nothing is done before a worker is dead."""
-        while work["config"]["seed"] > 0 and not gate.exists():
-            time.sleep(0.01)
-        return task.compute(work)
-
-    tasks = grid.read(toml).tasks
-    out = tmp_path / "killed.csv"
-    pids = []
-    with results.Results(out) as kept:
-        for each, row in engines.on_dask(client, tasks, gated, say=pids.append):
-            kept.append(each, row)
-            pids.append(row["pid"])
-            if len(pids) == 4:
-                assert not gate.exists()
-                os.kill(row["pid"], signal.SIGKILL)
-                gate.touch()
-    assert facts(out) == expected
-    assert lines(toml.with_name("killed.toml")) == 1 + 12
-
-
-def test_a_table_that_kills_its_workers_fails_alone(client, toml):
-    def poisonous(work):
-        if work["config"]["seed"] == 1 and work["until"] == {"sweeps": 8}:
-            os.kill(os.getpid(), signal.SIGKILL)
-        return task.compute(work)
-
-    toml.write_text(GRID.replace('kernel = ["wide", "box"]', 'kernel = "wide"'))
-    rows = list(engines.on_dask(client, grid.read(toml).tasks, poisonous, say=lambda text: None))
-    assert len(rows) == 6
-    failed = [
-        (each.labels["seed"], each.labels["budget"], row["message"])
-        for each, row in rows
-        if row["state"] != "done"
-    ]
-    assert failed == [
-        (1, "sweeps:8", "its worker died each time: look for memory that is too little, or a limit of time")
-    ]
-
-
-def test_a_scheduler_that_runs_already_is_used(client, toml):
-    out = toml.with_suffix(".csv")
-    assert (
-        study.main([str(toml), "--out", str(out), "--no-plot", "--scheduler", client.scheduler.address]) == 0
-    )
-    rows = results.load(out)
-    assert len(rows) == 12
-    assert all(row["worker"].startswith("tcp://") and row["pid"] != os.getpid() for row in rows.values())
-    made = facts(out)
-    out.unlink()
-    assert run(toml) == 0
-    assert facts(out) == made
-
-
-def test_slurm_gets_a_worker_on_each_core(toml, capsys):
-    pytest.importorskip("dask_jobqueue")
-    toml.write_text(
-        GRID + '[slurm]\njobs = 3\ncores = 16\nmemory = "32GB"\nqueue = "night"\nwalltime = "01:30:00"\n'
-    )
-    assert study.main([str(toml), "--job-script"]) == 0
-    script = capsys.readouterr().out
-    for part in [
-        "#SBATCH -p night",
-        "--cpus-per-task=16",
-        "--mem=30G",
-        "-t 01:30:00",
-        "--nthreads 1",
-        "--nworkers 16",
-    ]:
-        assert part in script
-    toml.write_text(GRID + "[slurm]\ncores = 16\n")
-    assert study.main([str(toml), "--job-script"]) == 1
-    assert "memory" in capsys.readouterr().err
 
 
 # Pictures.
@@ -432,3 +308,13 @@ def test_curves_are_medians_over_seeds(toml):
     assert plot.points(curves["box"]) == [(2.0, pytest.approx(0.3), 0.1, pytest.approx(0.9))] * 2
     with pytest.raises(grid.StudyError, match="run the study first"):
         plot.draw(tasks, {}, picture)
+
+
+def test_a_study_needs_no_picture(toml, capsys, monkeypatch):
+    arguments = [str(toml), "--out", str(toml.with_suffix(".csv"))]
+    assert study.main([*arguments, "--plot-only"]) == 1
+    assert "run the study first" in capsys.readouterr().err
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    assert study.main([*arguments, "--serial"]) == 0
+    assert "no picture: pictures need matplotlib" in capsys.readouterr().err
+    assert study.main([*arguments, "--plot-only"]) == 1

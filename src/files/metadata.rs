@@ -23,7 +23,7 @@ const RANGE: &str = "[0, 1)";
 /// Provenance of a table: everything needed to make it again, and what came of it.
 ///
 /// [`Metadata::new`] fills in what follows from the table; the rest is the caller's. Fields that are not
-/// known are ignored when reading, so that notes may be added to the file by hand.
+/// known are [`notes`](Metadata::notes), which may be added to the file by hand.
 ///
 /// JSON has no NaN and no infinities: where an `f64` of this structure is not finite, the file says `"NaN"`,
 /// `"inf"` or `"-inf"`. Seeds are plain JSON integers of up to 64 bits; readers that keep all numbers as
@@ -79,6 +79,9 @@ pub struct Metadata {
     pub bound: Option<BoundRecord>,
     /// How much work was done.
     pub run: RunRecord,
+    /// Whatever else is said, under other names than these.
+    #[serde(flatten)]
+    pub notes: serde_json::Map<String, serde_json::Value>,
 }
 
 /// The weights of a term's kernel.
@@ -207,6 +210,7 @@ impl Metadata {
             kernels: Vec::new(),
             bound: None,
             run: RunRecord::default(),
+            notes: serde_json::Map::new(),
         }
     }
 

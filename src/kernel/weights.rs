@@ -204,7 +204,9 @@ mod tests {
         let weights = noise([4, 6, 5]);
         let turned = weights.view().permuted_axes([0, 2, 1]);
         let mut mirrored = weights.view();
-        [0, 2].map(|axis| mirrored.invert_axis(Axis(axis)));
+        for axis in [0, 2] {
+            mirrored.invert_axis(Axis(axis));
+        }
         let thinned = weights.view().split_at(Axis(2), 3).0;
         let views = [turned, mirrored, thinned];
         for view in views {

@@ -43,6 +43,23 @@ fn metadata_come_back_whole() {
 }
 
 #[test]
+fn notes_come_back_beside_what_is_known() {
+    let home = tempdir().unwrap();
+    let path = home.path().join("table.npy");
+    let table = table();
+    let mut noted = metadata(&table);
+    noted.notes.insert("scene".into(), serde_json::json!({ "name": "kitchen", "spp": [1, 4.5, null] }));
+    noted.notes.insert("seeds".into(), u64::MAX.into());
+    table.save_with(&path, &noted).unwrap();
+    let read = Metadata::load(&path).unwrap();
+    assert_eq!(read.notes, noted.notes);
+    assert_eq!(read, Metadata { sha256: read.sha256.clone(), ..noted });
+    let json: serde_json::Value =
+        serde_json::from_slice(&fs::read(path.with_extension("json")).unwrap()).unwrap();
+    assert_eq!((&json["scene"]["name"], &json["notes"]), (&"kitchen".into(), &serde_json::Value::Null));
+}
+
+#[test]
 fn damaged_metadata_are_located() {
     let (home, table, [_, json]) = saved();
     let path = home.path().join("table.npy");

@@ -56,7 +56,7 @@ pub struct Arguments {
 
 /// Under what tables are measured.
 #[derive(Args, Clone, Debug)]
-pub(crate) struct Yardstick {
+pub struct Yardstick {
     /// none, gaussian:SIGMA, ema:ALPHA, box:N, binomial:N, perceptual:FPS or taps:a,b,… with the current
     /// frame first [default: perceptual:60; none for a single frame].
     #[arg(long, value_parser = temporal::parse)]
@@ -67,11 +67,24 @@ pub(crate) struct Yardstick {
     /// Names the integrands, the slices of the bound and white noise.
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
+    /// A filter of any other kind, instead of both.
+    #[arg(skip)]
+    pub kernel: Option<Kernel>,
+}
+
+/// As on a command line without flags.
+impl Default for Yardstick {
+    fn default() -> Self {
+        Self { temporal: None, sigma: 2.1, seed: 0, kernel: None }
+    }
 }
 
 impl Yardstick {
     /// The filter of a table of so many frames.
     pub fn kernel(&self, frames: usize) -> Kernel {
+        if let Some(kernel) = &self.kernel {
+            return kernel.clone();
+        }
         let temporal = temporal::or_default(self.temporal.as_ref(), frames);
         Kernel::product(SpatialKernel::Gaussian { sigma_px: self.sigma }, temporal)
     }
@@ -120,21 +133,53 @@ pub(crate) enum Beside {
 }
 
 impl Beside {
+    /// What is known of a table that has no file.
+    pub fn given(metadata: Option<Metadata>, table: &SampleTable) -> Self {
+        match metadata {
+            None => Self::Nothing,
+            Some(metadata) => Self::of(metadata, table),
+        }
+    }
+
+    fn of(metadata: Metadata, table: &SampleTable) -> Self {
+        match metadata.check(table) {
+            Err(problem) => Self::Foreign(problem),
+            Ok(()) => Self::Own(metadata.into()),
+        }
+    }
+
     pub fn find(path: &Path, table: &SampleTable) -> Self {
         if !Metadata::path_beside(path).exists() {
             return Self::Nothing;
         }
         match Metadata::load(path) {
             Err(error) => Self::Unusable(error),
-            Ok(metadata) => match metadata.check(table) {
-                Err(problem) => Self::Foreign(problem),
-                Ok(()) => Self::Own(metadata.into()),
-            },
+            Ok(metadata) => Self::of(metadata, table),
         }
     }
 }
 
 impl Inspection {
+    /// All of a table, with so many integrands per family and slices per term of the bound.
+    fn whole(
+        name: String,
+        table: SampleTable,
+        yardstick: &Yardstick,
+        [integrands, bound_slices]: [usize; 2],
+    ) -> Self {
+        let effort = Effort {
+            integrands,
+            of_bias: integrands,
+            of_spectra: integrands,
+            frames: None,
+            slabs: [usize::MAX; 2],
+            most_pairs: MOST_PAIRS,
+            bound_slices,
+            balance: true,
+        };
+        Self { name, kernel: yardstick.kernel(table.extent().frames), table, seed: yardstick.seed, effort }
+    }
+
     /// Width of the spatial Gaussian.
     pub fn sigma(&self) -> f64 {
         match self.kernel.spatial {
@@ -151,23 +196,9 @@ impl Inspection {
 pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
     let Arguments { path, integrands, bound_slices, yardstick, shared } = arguments;
     let table = SampleTable::load(path)?;
-    let integrands = *integrands as usize;
-    let inspection = Inspection {
-        name: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-        kernel: yardstick.kernel(table.extent().frames),
-        table,
-        seed: yardstick.seed,
-        effort: Effort {
-            integrands,
-            of_bias: integrands,
-            of_spectra: integrands,
-            frames: None,
-            slabs: [usize::MAX; 2],
-            most_pairs: MOST_PAIRS,
-            bound_slices: *bound_slices as usize,
-            balance: true,
-        },
-    };
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let efforts = [*integrands, *bound_slices].map(|count| count as usize);
+    let inspection = Inspection::whole(name, table, yardstick, efforts);
     // A bad kernel is found out before anything is said.
     inspection.kernel.taps(&inspection.table.extent())?;
     shared.start_threads()?;
@@ -188,4 +219,36 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
     console.say(|out| words::bound(out, &bound));
     console.figures(&figures::json(&inspection, &metadata, &groups, &bound));
     console.end(Ended::Done)
+}
+
+/// The figures that `fsot inspect --json` prints, of a table in memory. Prints nothing.
+///
+/// # Errors
+/// Whatever stands against it, in one sentence.
+///
+/// ```
+/// use fsot::{Extent, SampleTable};
+/// use fsot_cli::inspect::{Yardstick, figures_of};
+///
+/// let table = SampleTable::white_noise(Extent::still(8, 8), 2, 0)?;
+/// let figures = figures_of("noise".into(), table, None, &Yardstick::default(), 16, 64)?;
+/// assert_eq!(figures["shape"], serde_json::json!([1, 8, 8, 1, 2]));
+/// # Ok::<(), Box<dyn std::error::Error + Send + Sync>>(())
+/// ```
+pub fn figures_of(
+    name: String,
+    table: SampleTable,
+    metadata: Option<Metadata>,
+    yardstick: &Yardstick,
+    integrands: usize,
+    bound_slices: usize,
+) -> Result<serde_json::Value, Failure> {
+    let beside = Beside::given(metadata, &table);
+    let inspection = Inspection::whole(name, table, yardstick, [integrands, bound_slices]);
+    inspection.kernel.taps(&inspection.table.extent())?;
+    let dims = DimensionGroup::pairs_and_whole(inspection.table.dims());
+    let groups = dims.iter().map(|group| GroupFigures::measure(&inspection, group.dims.clone()));
+    let groups = groups.collect::<Result<Vec<_>, Failure>>()?;
+    let bound = figures::bound(&inspection, &dims)?;
+    Ok(figures::json(&inspection, &beside, &groups, &bound))
 }

@@ -14,7 +14,7 @@ mod two_class;
 pub use color_stipple::{INKS as PRINTERS_INKS, NAMES as PRINTERS_NAMES};
 pub use files::{record_path, record_text};
 pub use making::Work;
-pub use page::{BLACK, sheet, sheet_size, squares};
+pub use page::{BLACK, Dot, sheet, sheet_size, squares};
 pub use set::PointSet;
 pub use two_class::INKS as CLASS_INKS;
 

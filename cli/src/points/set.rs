@@ -61,7 +61,8 @@ impl PointSet {
             .collect()
     }
 
-    /// Names of the columns of its files: the coordinates, x, y and z or, of more, x0, x1, ..., and the label.
+    /// Names of the columns of its files: the coordinates, x, y and z or, of more, x0, x1, ..., and the
+    /// label.
     pub fn columns(&self) -> Vec<String> {
         let coordinates: Vec<String> = match self.dims {
             dims @ ..=3 => ["x", "y", "z"][..dims].iter().map(ToString::to_string).collect(),

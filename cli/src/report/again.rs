@@ -23,8 +23,8 @@ pub struct Origin {
 const LONGEST: usize = 40_000;
 
 impl Origin {
-    /// Of the table at this path, which is measured under this kernel.
-    pub fn new(path: &Path, beside: &Beside, kernel: &Kernel) -> Self {
+    /// Of the table at this path, if it has one, which is measured under this kernel.
+    pub fn new(path: Option<&Path>, beside: &Beside, kernel: &Kernel) -> Self {
         let nothing = |words| Self { words, command: None, configuration: None };
         match beside {
             Beside::Nothing => {
@@ -38,7 +38,7 @@ impl Origin {
         }
     }
 
-    fn known(path: &Path, metadata: &Metadata, kernel: &Kernel) -> Self {
+    fn known(path: Option<&Path>, metadata: &Metadata, kernel: &Kernel) -> Self {
         let Metadata { crate_version, seed, run, bound, sha256, configuration, .. } = metadata;
         let mut words = format!(
             "Made by fsot {crate_version} with seed {seed}, in {} steps and {:.2} s: {} sweeps of the \
@@ -68,7 +68,7 @@ impl Origin {
             words += ".";
         }
         let obstacle = obstacle(run).filter(|_| config.is_some());
-        let command = match (config.is_some(), path.to_str()) {
+        let command = match (config.is_some(), path.map(Path::to_str)) {
             _ if obstacle.is_some() => {
                 words += &format!(" No command makes it again: {}.", obstacle.unwrap_or_default());
                 None
@@ -78,12 +78,14 @@ impl Origin {
                           the table again.";
                 None
             }
-            (true, None) => {
+            // Whoever has the table has its configuration at hand.
+            (true, None) => None,
+            (true, Some(None)) => {
                 words += " The name of its file is not text, so that no command can be printed.";
                 None
             }
-            (true, Some(_)) => {
-                let json = shell::path(Metadata::path_beside(path));
+            (true, Some(Some(path))) => {
+                let json = shell::path(Metadata::path_beside(Path::new(path)));
                 Some(format!("fsot table --config {json} --out again.npy"))
             }
         };

@@ -5,7 +5,6 @@ use fsot::metrics::{ErrorImage, Family, Integrand, Integrands};
 use fsot::{Extent, Kernel, SampleTable, Site};
 use rayon::prelude::*;
 
-use super::panels::LARGEST_SIDE;
 use crate::Failure;
 use crate::draw::raster::{Grey, grey};
 
@@ -26,13 +25,14 @@ impl Edge {
         dims: &[usize],
         integrand: &Integrand,
         kernel: &Kernel,
+        largest_side: usize,
     ) -> Result<Self, Failure> {
         let extent = table.extent();
         let Extent { frames, height, width, .. } = extent;
         let ErrorImage { errors, white_variance, .. } = ErrorImage::measure(table, dims, integrand)?;
         let taps = kernel.taps(&extent)?;
         let affordable = ((MOST_WORK / taps.len()) as f64).sqrt().max(1.0) as usize;
-        let [rows, columns] = [height, width].map(|side| side.min(LARGEST_SIDE).min(affordable));
+        let [rows, columns] = [height, width].map(|side| side.min(largest_side).min(affordable));
         let sum: f64 = taps.iter().map(|tap| tap.weight).sum();
         let frame = frames - 1;
         let sites = (0..rows * columns).map(|i| Site { frame, y: i / columns, x: i % columns });

@@ -5,6 +5,7 @@ mod chart;
 mod edge;
 mod effort;
 mod figures;
+mod glance;
 mod marginals;
 mod page;
 mod panels;
@@ -23,6 +24,7 @@ use fsot::{Kernel, SampleTable};
 use serde_json::json;
 
 use self::again::Origin;
+pub use self::glance::Glance;
 use self::marginals::Profile;
 use self::panels::Panels;
 use crate::console::Console;
@@ -73,6 +75,72 @@ pub struct Arguments {
     shared: Shared,
 }
 
+/// A table in memory that a page is about.
+#[derive(Clone, Debug)]
+pub struct Shown {
+    /// What it is called on the page.
+    pub label: String,
+    /// The table.
+    pub table: SampleTable,
+    /// How it came to be, if that is known.
+    pub metadata: Option<Metadata>,
+}
+
+/// A page, and a sheet of its pictures alone.
+#[derive(Clone, Debug)]
+pub struct Pages {
+    /// HTML.
+    pub html: String,
+    /// PNG.
+    pub png: Vec<u8>,
+}
+
+/// Makes a page about tables in memory, like that of `fsot report` about files. Prints and writes nothing;
+/// `made_by` is said at its end.
+///
+/// # Errors
+/// Whatever stands against it, in one sentence.
+///
+/// ```
+/// use fsot::{Extent, SampleTable};
+/// use fsot_cli::inspect::Yardstick;
+/// use fsot_cli::report::{Shown, pages};
+///
+/// let table = SampleTable::white_noise(Extent::still(8, 8), 2, 0)?;
+/// let shown = Shown { label: "noise".into(), table, metadata: None };
+/// let html = pages(vec![shown], "a test", &Yardstick::default(), Some(16), 64)?.html;
+/// assert!(html.contains("a test"));
+/// # Ok::<(), Box<dyn std::error::Error + Send + Sync>>(())
+/// ```
+pub fn pages(
+    tables: Vec<Shown>,
+    made_by: &str,
+    yardstick: &Yardstick,
+    integrands: Option<usize>,
+    bound_slices: usize,
+) -> Result<Pages, Failure> {
+    let first = tables.first().ok_or("there are no tables: give at least 1")?;
+    for Shown { table, .. } in &tables {
+        yardstick.kernel(table.extent().frames).taps(&table.extent())?;
+    }
+    let look = Look { yardstick, integrands, bound_slices };
+    let white = look.white_noise(&first.table)?;
+    let columns = tables.into_iter().map(|Shown { label, table, metadata }| {
+        let beside = Beside::given(metadata, &table);
+        Column::measure(table, label.clone(), label, beside, None, &look)
+    });
+    let columns = columns.collect::<Result<Vec<_>, Failure>>()?;
+    let report = Report { white, columns, command: made_by.to_owned() };
+    Ok(Pages { html: page::html(&report)?, png: sheet::picture(&report).to_png()? })
+}
+
+/// How tables are looked at.
+struct Look<'a> {
+    yardstick: &'a Yardstick,
+    integrands: Option<usize>,
+    bound_slices: usize,
+}
+
 /// A table, measured.
 struct Column {
     label: String,
@@ -100,7 +168,7 @@ struct Report {
 /// # Errors
 /// Whatever stands against it, in one sentence.
 pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
-    let Arguments { paths, png, shared, yardstick, .. } = arguments;
+    let Arguments { paths, png, shared, yardstick, integrands, bound_slices, .. } = arguments;
     let out = match (&arguments.out, png) {
         (None, Some(_)) => None,
         (out, _) => Some(out.clone().unwrap_or_else(|| "report.html".into())),
@@ -120,10 +188,14 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
 
     let mut console = Console::new(shared);
     let labels = labels(paths);
-    let white = white_noise(&tables[0], arguments)?;
+    let integrands = integrands.map(|count| count as usize);
+    let look = Look { yardstick, integrands, bound_slices: *bound_slices as usize };
+    let white = look.white_noise(&tables[0])?;
     let mut columns = Vec::new();
     for ((table, path), label) in tables.into_iter().zip(paths).zip(labels) {
-        let column = Column::measure(table, path, label, arguments)?;
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let beside = Beside::find(path, &table);
+        let column = Column::measure(table, name, label, beside, Some(path), &look)?;
         console.say(|out| {
             let (error, bound) = (column.error(), column.bound.ratio_to_white_noise);
             writeln!(out, "{}: {}", column.label, shape(&column.inspection.table))?;
@@ -162,31 +234,38 @@ pub fn run(arguments: &Arguments) -> Result<Ended, Failure> {
     console.end(Ended::Done)
 }
 
-/// Pictures of white noise of the table's shape.
-fn white_noise(table: &SampleTable, arguments: &Arguments) -> Result<Panels, Failure> {
-    let seed = arguments.yardstick.seed;
-    let extent = table.extent();
-    // Another seed than a table's own, which may have started from white noise of this very seed.
-    let white = SampleTable::white_noise(extent, table.dims(), seed ^ 0x0077_6869_7465)?;
-    let dims: Vec<usize> = (0..table.dims().min(2)).collect();
-    let kernel = arguments.yardstick.kernel(extent.frames);
-    let effort = arguments.effort(&white, &kernel)?;
-    let integrands = Integrands::random(dims.len(), effort.of_spectra, seed)?;
-    let spectra = measured::spectra(&white, &dims, &integrands, &effort)?;
-    Panels::new(&white, &dims, &kernel, seed, &spectra)
+impl Look<'_> {
+    fn effort(&self, table: &SampleTable, kernel: &Kernel) -> Result<Effort, Failure> {
+        effort::of(table, kernel, self.integrands, self.bound_slices)
+    }
+
+    /// Pictures of white noise of the table's shape.
+    fn white_noise(&self, table: &SampleTable) -> Result<Panels, Failure> {
+        let seed = self.yardstick.seed;
+        let extent = table.extent();
+        // Another seed than a table's own, which may have started from white noise of this very seed.
+        let white = SampleTable::white_noise(extent, table.dims(), seed ^ 0x0077_6869_7465)?;
+        let dims: Vec<usize> = (0..table.dims().min(2)).collect();
+        let kernel = self.yardstick.kernel(extent.frames);
+        let effort = self.effort(&white, &kernel)?;
+        let integrands = Integrands::random(dims.len(), effort.of_spectra, seed)?;
+        let spectra = measured::spectra(&white, &dims, &integrands, &effort)?;
+        Panels::new(&white, &dims, &kernel, seed, &spectra)
+    }
 }
 
 impl Column {
     fn measure(
         table: SampleTable,
-        path: &Path,
+        name: String,
         label: String,
-        arguments: &Arguments,
+        beside: Beside,
+        path: Option<&Path>,
+        look: &Look<'_>,
     ) -> Result<Self, Failure> {
-        let kernel = arguments.yardstick.kernel(table.extent().frames);
-        let effort = arguments.effort(&table, &kernel)?;
-        let seed = arguments.yardstick.seed;
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let kernel = look.yardstick.kernel(table.extent().frames);
+        let effort = look.effort(&table, &kernel)?;
+        let seed = look.yardstick.seed;
         let inspection = Inspection { name, table, kernel, seed, effort };
         let Inspection { table, kernel, .. } = &inspection;
         let dims = DimensionGroup::pairs_and_whole(table.dims());
@@ -197,7 +276,6 @@ impl Column {
         let profiles = shown.dims.iter().take(2).map(|&dim| Profile::measure(table, dim));
         let profiles = profiles.collect::<Result<_, _>>()?;
         let bound = measured::bound(&inspection, &dims)?;
-        let beside = Beside::find(path, table);
         let origin = Origin::new(path, &beside, kernel);
         Ok(Self { label, beside, origin, groups, bound, panels, profiles, inspection })
     }
@@ -220,12 +298,6 @@ impl Column {
         figures["frames_of_filtered_error"] = inspection.effort.frames.into();
         figures["made_again_by"] = origin.command.clone().into();
         figures
-    }
-}
-
-impl Arguments {
-    fn effort(&self, table: &SampleTable, kernel: &Kernel) -> Result<Effort, Failure> {
-        effort::of(table, kernel, self.integrands.map(|count| count as usize), self.bound_slices as usize)
     }
 }
 

@@ -48,20 +48,26 @@ impl Panels {
         seed: u64,
         spectra: &Spectra,
     ) -> Result<Self, Failure> {
-        let Extent { frames, height, width, .. } = table.extent();
-        let [columns, rows] = [width, height].map(|side| side.min(LARGEST_SIDE));
-        let value = |x, y| f64::from(table.sample(Site { frame: 0, y, x }, 0)[dims[0]]);
+        let edge = ordinary_half_plane(dims.len(), seed)?;
         Ok(Self {
-            texture: Grey::from_fn(columns, rows, |x, y| [grey(value(x, y))]),
+            texture: texture(table, dims, LARGEST_SIDE),
             block: block(table, dims),
             frame: frame(table, dims),
-            edge: Edge::new(table, dims, &ordinary_half_plane(dims.len(), seed)?, kernel)?,
-            xy: spectrum(&spectra.xy),
-            xt: (frames > 1).then(|| spectrum(&spectra.xt)),
+            edge: Edge::new(table, dims, &edge, kernel, LARGEST_SIDE)?,
+            xy: spectrum(&spectra.xy, LARGEST_SIDE),
+            xt: (table.extent().frames > 1).then(|| spectrum(&spectra.xt, LARGEST_SIDE)),
             radial: spectra.radial(),
             density: density(table, dims)?,
         })
     }
+}
+
+/// The first number of each pixel of the first frame.
+pub fn texture(table: &SampleTable, dims: &[usize], largest_side: usize) -> Grey {
+    let Extent { height, width, .. } = table.extent();
+    let [columns, rows] = [width, height].map(|side| side.min(largest_side));
+    let value = |x, y| f64::from(table.sample(Site { frame: 0, y, x }, 0)[dims[0]]);
+    Grey::from_fn(columns, rows, |x, y| [grey(value(x, y))])
 }
 
 /// Whether frames are larger than their picture.
@@ -81,7 +87,8 @@ fn block(table: &SampleTable, dims: &[usize]) -> Dots {
     Dots { points, what }
 }
 
-fn frame(table: &SampleTable, dims: &[usize]) -> Dots {
+/// Samples of the first frame.
+pub fn frame(table: &SampleTable, dims: &[usize]) -> Dots {
     let Extent { height, width, spp, .. } = table.extent();
     let shown = (MOST_DOTS / spp).clamp(1, height * width);
     let points = dots(table, dims, (0..shown).map(|i| (i / width, i % width)));
@@ -111,9 +118,9 @@ fn dots(
 }
 
 /// Black at 0, grey at 1, white from 2 on; what is larger than a picture is averaged.
-fn spectrum(values: &Array2<f64>) -> Grey {
+pub fn spectrum(values: &Array2<f64>, largest_side: usize) -> Grey {
     let (height, width) = values.dim();
-    let [down, across] = [height, width].map(|side| side.div_ceil(LARGEST_SIDE));
+    let [down, across] = [height, width].map(|side| side.div_ceil(largest_side));
     Grey::from_fn(width.div_ceil(across), height.div_ceil(down), |column, row| {
         let rows = row * down..((row + 1) * down).min(height);
         let columns = column * across..((column + 1) * across).min(width);

@@ -28,7 +28,44 @@ pub fn picture(report: &Report) -> Grey {
             grey(&mut page, [at(3 + column), at(row)], picture);
         }
     }
-    // Paper, ink and frames are grey as well.
+    of_page(&page)
+}
+
+/// What may stand in a row.
+pub enum Cell {
+    Grey(Grey),
+    Dots(Dots),
+}
+
+impl Cell {
+    /// It alone; points as large as they are in a row.
+    pub fn picture(self) -> Grey {
+        match self {
+            Self::Grey(picture) => picture,
+            Self::Dots(points) => {
+                let mut page = Page::new(SIDE + 2, SIDE + 2);
+                dots(&mut page, [1, 1], &points);
+                of_page(&page)
+            }
+        }
+    }
+}
+
+/// One row.
+pub fn row<'a>(cells: impl ExactSizeIterator<Item = &'a Cell>) -> Grey {
+    let at = |index: usize| GAP + index * (SIDE + GAP);
+    let mut page = Page::new(at(cells.len()), at(1));
+    for (column, cell) in cells.enumerate() {
+        match cell {
+            Cell::Grey(picture) => grey(&mut page, [at(column), GAP], picture),
+            Cell::Dots(points) => dots(&mut page, [at(column), GAP], points),
+        }
+    }
+    of_page(&page)
+}
+
+/// Paper, ink and frames are grey.
+fn of_page(page: &Page) -> Grey {
     let [width, height] = [page.picture.width(), page.picture.height()];
     Grey::from_fn(width, height, |x, y| [page.picture.pixels()[y * width + x][0]])
 }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import importlib
 import importlib.util
 import logging
 import signal
@@ -63,17 +64,22 @@ def _together(
     client: Any, tasks: Sequence[Task], compute: Compute, say: Callable[[str], None]
 ) -> Iterator[tuple[Task, Any]]:
     import cloudpickle
-    from distributed import as_completed
 
-    # Workers need not have this folder.
+    _, distributed = _dask()
+    # Workers need not have this folder. Dask pickles by name what has one, so that the function that it gets
+    # has none.
     cloudpickle.register_pickle_by_value(task)
+
+    def carried(work: dict[str, Any]) -> Row:
+        return compute(work)
+
     # Keys of our own, lest two studies on one scheduler share tasks.
     run = uuid.uuid4().hex[:8]
     by_key = {f"table-{run}{each.key[:24]}": each for each in tasks}
     works = [each.work for each in tasks]
     # What is running when this ends early is of no use to anybody: futures are not kept beyond.
-    done = as_completed(
-        client.map(compute, works, key=list(by_key), pure=False, batch_size=1000),
+    done = distributed.as_completed(
+        client.map(carried, works, key=list(by_key), pure=False, batch_size=1000),
         with_results=True,
         raise_errors=False,
     )
@@ -172,14 +178,14 @@ def slurm(section: dict[str, Any], tries: int) -> Iterator[Any]:
 def slurm_cluster(section: dict[str, Any]) -> Any:
     """The cluster of a section ``[slurm]``, without jobs: one worker a core, unless it says otherwise."""
     try:
-        from dask_jobqueue import SLURMCluster
+        jobqueue: Any = importlib.import_module("dask_jobqueue")
     except ImportError as error:
         raise StudyError("SLURM needs dask-jobqueue: pip install dask-jobqueue") from error
     options = {key: value for key, value in section.items() if key != "jobs"}
     if "cores" in options:
         options.setdefault("processes", options["cores"])
     try:
-        return SLURMCluster(**options)
+        return jobqueue.SLURMCluster(**options)
     except (ValueError, TypeError) as error:
         raise StudyError(f"[slurm]: {sentence(error)}") from error
 

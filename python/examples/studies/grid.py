@@ -94,12 +94,14 @@ def read(path: Path) -> Study:
             raise StudyError(f"{section} is no section: write {wanted}")
     if not data.get("grid"):
         raise StudyError(f"{path} makes no tables: write a [[grid]]")
+    _known(data.get("local", {}), ["workers"], "[local]")
+    for section, key in (("local", "workers"), ("slurm", "jobs")):
+        _whole(key, data.get(section, {}).get(key, 1), 1)
     kernels = _Kernels(data.get("kernels", {}), path.parent)
     measure = MEASURE | data.get("measure", {})
     _known(measure, MEASURE, "[measure]")
     for key, least in (("integrands", 1), ("slices", 1), ("seed", 0)):
-        if type(measure[key]) is not int or measure[key] < least:
-            raise StudyError(f"{key} is {measure[key]!r}: give a whole number of at least {least}")
+        _whole(key, measure[key], least)
     # Grids may overlap.
     tasks = {task.key: task for grid in data["grid"] for task in _tasks(grid, kernels, measure)}
     return Study(list(tasks.values()), data.get("local", {}), data.get("slurm", {}))
@@ -210,6 +212,11 @@ def _list(axis: str, value: Any) -> list[Any]:
     if not values and axis in AXES:
         raise StudyError(f"{axis} is an empty list: give a value, or leave it out")
     return values
+
+
+def _whole(key: str, value: Any, least: int) -> None:
+    if type(value) is not int or value < least:
+        raise StudyError(f"{key} is {value!r}: give a whole number of at least {least}")
 
 
 def _known(given: Iterable[str], known: Iterable[str], where: str) -> None:

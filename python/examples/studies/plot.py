@@ -29,13 +29,15 @@ def draw(tasks: Iterable[Task], rows: dict[str, Row], path: Path) -> int:
     except ImportError as error:
         raise StudyError("pictures need matplotlib: pip install matplotlib") from error
     from matplotlib.figure import Figure
+    from matplotlib.ticker import LogLocator, NullLocator
 
     shapes = panels(tasks, rows)
     if not shapes:
         raise StudyError("nothing is done that could be drawn: run the study first")
     columns = min(len(shapes), 4 if len(shapes) > 4 else 2)
     lines = -(-len(shapes) // columns)
-    kernels = sorted({kernel for curves in shapes.values() for kernel in curves})
+    # In the order of the grid.
+    kernels = list(dict.fromkeys(kernel for curves in shapes.values() for kernel in curves))
     told = [
         at for at, of in enumerate(PANEL) if of in ("spp", "dims") or len({shape[at] for shape in shapes}) > 1
     ]
@@ -47,6 +49,9 @@ def draw(tasks: Iterable[Task], rows: dict[str, Row], path: Path) -> int:
                 if kernel in curves:
                     _curve(axes, points(curves[kernel]), number, kernel)
             axes.set(xscale="log", yscale="log")
+            axes.yaxis.set(major_locator=LogLocator(subs=(1, 2, 5)), minor_locator=NullLocator())
+            for axis in (axes.xaxis, axes.yaxis):
+                axis.set_major_formatter("{x:g}")
             axes.set_title(", ".join(f"{PANEL[at]} {shape[at]}" for at in told), fontsize=9)
             axes.grid(which="major", color="0.9", linewidth=0.6)
         for axes in grid.flat[len(shapes) :]:

@@ -36,7 +36,12 @@ pub struct PyIntegrands {
     families: Vec<(String, Vec<PyIntegrand>)>,
     /// What the library needs, where no function is a caller's.
     ready: Option<Arc<Integrands>>,
+    /// Number and seed of each of the first four families, if they were drawn.
+    drawn: Option<(usize, u64)>,
 }
+
+/// Families that are drawn together.
+const DRAWN: usize = 4;
 
 #[pymethods]
 impl PyIntegrands {
@@ -49,7 +54,7 @@ impl PyIntegrands {
         let Some(dims) = families.iter().flat_map(|(_, list)| list).map(PyIntegrand::dims).next() else {
             return Err(refused("there are no integrands: give at least 1"));
         };
-        Self::checked(dims, families)
+        Self::checked(dims, families, None)
     }
 
     /// Draws integrands of four families: half-spaces, smooth functions, balls and boxes.
@@ -75,14 +80,15 @@ impl PyIntegrands {
             (drawn.name().to_owned(), of.collect())
         });
         let families = families.collect();
-        Ok(Self { dims: dims.0, families, ready: Some(Arc::new(ready)) })
+        let drawn = Some((per_family.0, seed.0));
+        Ok(Self { dims: dims.0, families, ready: Some(Arc::new(ready)), drawn })
     }
 
     /// The same with a further family, which counts as much as every other, whatever its size.
     fn with_family(&self, name: String, integrands: Vec<PyIntegrand>) -> PyResult<Self> {
         let mut families = self.families.clone();
         families.push((name, integrands));
-        Self::checked(self.dims, families)
+        Self::checked(self.dims, families, self.drawn)
     }
 
     /// Coordinates of a point.
@@ -109,14 +115,34 @@ impl PyIntegrands {
         format!("<integrands of {} coordinates: {of}>", self.dims)
     }
 
+    /// Drawn families, and others after them.
+    #[staticmethod]
+    fn _drawn(dims: Count, per_family: Count, seed: Number, others: &Bound<'_, PyDict>) -> PyResult<Self> {
+        others.iter().try_fold(Self::random(dims, per_family, seed)?, |all, (name, integrands)| {
+            all.with_family(name.extract()?, integrands.extract()?)
+        })
+    }
+
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
-        Ok((py.get_type::<Self>().into_any(), (self.families(py)?,).into_pyobject(py)?.into_any()))
+        let class = py.get_type::<Self>();
+        let Some((per_family, seed)) = self.drawn else {
+            return Ok((class.into_any(), (self.families(py)?,).into_pyobject(py)?.into_any()));
+        };
+        let others = PyDict::new(py);
+        let own = self.families.iter().skip(DRAWN);
+        own.into_iter().try_for_each(|(name, list)| others.set_item(name, list.clone()))?;
+        let parts = (self.dims, per_family, seed, others);
+        Ok((class.getattr("_drawn")?, parts.into_pyobject(py)?.into_any()))
     }
 }
 
 impl PyIntegrands {
     /// Refuses what the library refuses, before any function is called.
-    fn checked(dims: usize, families: Vec<(String, Vec<PyIntegrand>)>) -> PyResult<Self> {
+    fn checked(
+        dims: usize,
+        families: Vec<(String, Vec<PyIntegrand>)>,
+        drawn: Option<(usize, u64)>,
+    ) -> PyResult<Self> {
         let stand_in = |integrand: &PyIntegrand| match &integrand.0 {
             Source::Drawn { integrand, .. } => Ok(integrand.clone()),
             Source::Own(own) => {
@@ -130,7 +156,7 @@ impl PyIntegrands {
         }
         let is_own = |integrand: &PyIntegrand| matches!(integrand.0, Source::Own(_));
         let has_own = families.iter().flat_map(|(_, list)| list).any(is_own);
-        Ok(Self { dims, ready: all.map(Arc::new).filter(|_| !has_own), families })
+        Ok(Self { dims, ready: all.map(Arc::new).filter(|_| !has_own), families, drawn })
     }
 
     /// The integrands as the library measures them on these samples: functions of Python's are called here.

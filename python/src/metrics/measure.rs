@@ -18,12 +18,14 @@ use pyo3::prelude::*;
 use super::given::{Given, group_of};
 use super::integrand::{Places, PyIntegrand};
 use super::integrands::{PyIntegrands, places};
+use super::measured;
 use crate::arrays::{Numbers, to_numpy};
 use crate::config::PyConfig;
 use crate::counts::{Count, Number};
 use crate::errors::{OrPython, refused};
 use crate::kernel::PyKernel;
-use crate::work::detached;
+use crate::objective::PyObjective;
+use crate::target::PyTarget;
 
 /// Mean and standard error.
 type Pair = (f64, f64);
@@ -84,7 +86,7 @@ pub fn measure_filtered_error(
     integrands: Option<PyIntegrands>,
     kernel: Option<PyKernel>,
     frames: Option<Count>,
-    threads: Option<usize>,
+    threads: Option<Count>,
 ) -> PyResult<[OfFamilies; 3]> {
     let question = Question::new(samples, dims)?;
     let integrands = question.integrands(py, integrands.as_ref())?;
@@ -95,7 +97,7 @@ pub fn measure_filtered_error(
         }
         None => FilteredError::measure(given.samples()?, &group, &integrands, &kernel),
     };
-    let error = detached(py, threads, measure)?.python()?;
+    let error = measured(py, threads, measure)?.python()?;
     Ok([&error.unfiltered, &error.spatial, &error.spatio_temporal].map(of_families))
 }
 
@@ -106,12 +108,12 @@ pub fn measure_bias(
     samples: &Bound<'_, PyAny>,
     dims: Option<&Bound<'_, PyAny>>,
     integrands: Option<PyIntegrands>,
-    threads: Option<usize>,
+    threads: Option<Count>,
 ) -> PyResult<[OfFamilies; 3]> {
     let question = Question::new(samples, dims)?;
     let integrands = question.integrands(py, integrands.as_ref())?;
     let Question { given, group } = question;
-    let bias = detached(py, threads, || Bias::measure(given.samples()?, &group, &integrands))?.python()?;
+    let bias = measured(py, threads, || Bias::measure(given.samples()?, &group, &integrands))?.python()?;
     Ok([&bias.table, &bias.frame, &bias.pixel].map(of_families))
 }
 
@@ -122,12 +124,12 @@ pub fn measure_set_error(
     samples: &Bound<'_, PyAny>,
     dims: Option<&Bound<'_, PyAny>>,
     integrands: Option<PyIntegrands>,
-    threads: Option<usize>,
+    threads: Option<Count>,
 ) -> PyResult<OfFamilies> {
     let question = Question::new(samples, dims)?;
     let integrands = question.integrands(py, integrands.as_ref())?;
     let Question { given, group } = question;
-    let error = detached(py, threads, || SetError::measure(given.samples()?, &group, &integrands))?;
+    let error = measured(py, threads, || SetError::measure(given.samples()?, &group, &integrands))?;
     Ok(of_families(&error.python()?.ratios))
 }
 
@@ -138,34 +140,46 @@ fn bound_figures(estimate: &BoundEstimate) -> BoundFigures {
     (value, standard_error, ratio_to_white_noise, ratio_standard_error)
 }
 
+/// Whose bound it is.
+#[derive(FromPyObject)]
+pub enum Aim<'py> {
+    Config(PyRef<'py, PyConfig>),
+    Objective(PyRef<'py, PyObjective>),
+}
+
 #[pyfunction]
-#[pyo3(signature = (samples, config, kernel, slices, seed, threads))]
+#[pyo3(signature = (samples, aim, kernel, slices, seed, threads))]
 pub fn measure_bound(
     py: Python<'_>,
     samples: &Bound<'_, PyAny>,
-    config: Option<PyConfig>,
+    aim: Option<Aim<'_>>,
     kernel: Option<PyKernel>,
     slices: Count,
     seed: Number,
-    threads: Option<usize>,
+    threads: Option<Count>,
 ) -> PyResult<(BoundFigures, Vec<BoundFigures>)> {
     let given = Given::of(samples)?;
-    let config = match (config, kernel) {
+    let planned = match (aim, kernel) {
         (Some(_), Some(_)) => {
-            return Err(refused("config and kernel say the same thing twice: leave out one of them"));
+            return Err(refused("the objective has its own kernel: leave out one of them"));
         }
-        (Some(config), None) => config.0,
+        (Some(Aim::Objective(objective)), None) => Ok(Arc::clone(&objective.objective)),
+        (Some(Aim::Config(config)), None) => Err(config.0.clone()),
         (None, kernel) => {
             let kernel = kernel.map_or_else(|| usual_kernel(given.frames()), |kernel| kernel.0);
             let groups = DimensionGroup::pairs_and_whole(given.dims);
-            Config::new(given.extent(), given.dims).with_groups(&groups).with_kernel(kernel)
+            Err(Config::new(given.extent(), given.dims).with_groups(&groups).with_kernel(kernel))
         }
     };
     let measure = || -> Result<OfObjective, MeasureError> {
         let samples = given.samples()?;
-        OfObjective::measure(samples, &Objective::new(&config)?, seed.0, slices.0)
+        let objective = match planned {
+            Ok(objective) => objective,
+            Err(config) => Arc::new(Objective::new(&config)?),
+        };
+        OfObjective::measure(samples, &objective, seed.0, slices.0)
     };
-    let bound = detached(py, threads, measure)?.python()?;
+    let bound = measured(py, threads, measure)?.python()?;
     Ok((bound_figures(&bound.total), bound.terms.iter().map(bound_figures).collect()))
 }
 
@@ -193,12 +207,12 @@ pub fn measure_spectra<'py>(
     samples: &Bound<'py, PyAny>,
     dims: Option<&Bound<'py, PyAny>>,
     integrands: Option<PyIntegrands>,
-    threads: Option<usize>,
+    threads: Option<Count>,
 ) -> PyResult<SpectraArrays<'py>> {
     let question = Question::new(samples, dims)?;
     let integrands = question.integrands(py, integrands.as_ref())?;
     let Question { given, group } = question;
-    let spectra = detached(py, threads, || Spectra::measure(given.samples()?, &group, &integrands))?;
+    let spectra = measured(py, threads, || Spectra::measure(given.samples()?, &group, &integrands))?;
     Ok(spectra_arrays(py, spectra.python()?))
 }
 
@@ -240,12 +254,12 @@ pub fn measure_error_image<'py>(
     samples: &Bound<'py, PyAny>,
     integrand: &PyIntegrand,
     dims: Option<&Bound<'py, PyAny>>,
-    threads: Option<usize>,
+    threads: Option<Count>,
 ) -> PyResult<(Bound<'py, PyArray3<f64>>, f64)> {
     let Question { given, group } = Question::new(samples, dims)?;
     let list = || places(&given, &group, integrand.dims());
     let integrand = integrand.at(py, &mut Places::new(&list))?;
-    let image = detached(py, threads, || ErrorImage::measure(given.samples()?, &group, &integrand))?;
+    let image = measured(py, threads, || ErrorImage::measure(given.samples()?, &group, &integrand))?;
     let ErrorImage { errors, white_variance, .. } = image.python()?;
     Ok((to_numpy(py, errors), white_variance))
 }
@@ -258,10 +272,10 @@ pub fn measure_marginal<'py>(
     samples: &Bound<'py, PyAny>,
     dim: Count,
     bins: Count,
-    threads: Option<usize>,
+    threads: Option<Count>,
 ) -> PyResult<(Bound<'py, PyArray1<u64>>, Vec<(f64, f64, f64)>, u64)> {
     let given = Given::of(samples)?;
-    let marginal = detached(py, threads, || Marginal::measure(given.samples()?, dim.0, bins.0))?.python()?;
+    let marginal = measured(py, threads, || Marginal::measure(given.samples()?, dim.0, bins.0))?.python()?;
     let faces = marginal.faces.iter().map(|face| (face.within, face.density, face.standard_error));
     Ok((PyArray1::from_vec(py, marginal.counts.clone()), faces.collect(), marginal.zeros))
 }
@@ -273,12 +287,12 @@ pub fn measure_histogram<'py>(
     samples: &Bound<'py, PyAny>,
     dims: [Count; 2],
     cells_per_side: Count,
-    threads: Option<usize>,
+    threads: Option<Count>,
 ) -> PyResult<(Bound<'py, PyArray1<u64>>, f64)> {
     let given = Given::of(samples)?;
     let dims = dims.map(|Count(dim)| dim);
     let measure = || Histogram::measure(given.samples()?, dims, cells_per_side.0);
-    let histogram = detached(py, threads, measure)?.python()?;
+    let histogram = measured(py, threads, measure)?.python()?;
     let spread = histogram.spread();
     Ok((PyArray1::from_vec(py, histogram.counts), spread))
 }
@@ -289,27 +303,33 @@ pub fn measure_discrepancy(
     py: Python<'_>,
     samples: &Bound<'_, PyAny>,
     dims: Option<&Bound<'_, PyAny>>,
-    threads: Option<usize>,
+    threads: Option<Count>,
 ) -> PyResult<(f64, f64)> {
     let Question { given, group } = Question::new(samples, dims)?;
-    let found = detached(py, threads, || Discrepancy::measure(given.samples()?, &group))?.python()?;
+    let found = measured(py, threads, || Discrepancy::measure(given.samples()?, &group))?.python()?;
     Ok((found.squared, found.ratio_to_white_noise))
 }
 
-/// The cube, or a picture `[y, x]`.
+/// The cube, a target, or a picture `[y, x]`.
 fn target_of(target: Option<&Bound<'_, PyAny>>) -> PyResult<Target> {
-    match target {
-        None => Ok(Target::UniformCube),
-        Some(picture) => Ok(Target::Density(Arc::new(density_of(picture)?))),
+    let Some(target) = target else { return Ok(Target::UniformCube) };
+    match target.extract::<PyTarget>() {
+        Ok(PyTarget(target)) => Ok(target),
+        Err(_) => Ok(Target::Density(density_of(target)?)),
     }
 }
 
-fn density_of(picture: &Bound<'_, PyAny>) -> PyResult<Density> {
+fn density_of(picture: &Bound<'_, PyAny>) -> PyResult<Arc<Density>> {
+    match picture.extract::<PyTarget>() {
+        Ok(PyTarget(Target::Density(density))) => return Ok(density),
+        Ok(_) => return Err(refused("the target is no density: give Target.density, or an array [y, x]")),
+        Err(_) => {}
+    }
     let Numbers { shape, values } = Numbers::<f32>::of(picture)?;
     let &[height, width] = shape.as_slice() else {
         return Err(refused(format!("a density of shape {shape:?}: give an array [y, x]")));
     };
-    Density::new(width, height, values).python()
+    Density::new(width, height, values).map(Arc::new).python()
 }
 
 #[pyfunction]
@@ -320,12 +340,12 @@ pub fn measure_sliced_distance(
     dims: Option<&Bound<'_, PyAny>>,
     target: Option<&Bound<'_, PyAny>>,
     directions: Count,
-    threads: Option<usize>,
+    threads: Option<Count>,
 ) -> PyResult<f64> {
     let Question { given, group } = Question::new(samples, dims)?;
     let target = target_of(target)?;
     let measure = || SlicedDistance::measure(given.samples()?, &group, &target, directions.0);
-    Ok(detached(py, threads, measure)?.python()?.w2)
+    Ok(measured(py, threads, measure)?.python()?.w2)
 }
 
 /// Correlation and strays; deviation, column, row, side, points and expectation of the worst block.
@@ -339,13 +359,13 @@ pub fn measure_density_match(
     density: &Bound<'_, PyAny>,
     sigma: f64,
     dims: [Count; 2],
-    threads: Option<usize>,
+    threads: Option<Count>,
 ) -> PyResult<Match> {
     let given = Given::of(samples)?;
     let density = density_of(density)?;
     let dims = dims.map(|Count(dim)| dim);
     let measure = || DensityMatch::measure(given.samples()?, dims, &density, sigma);
-    let DensityMatch { correlation, strays, worst, .. } = detached(py, threads, measure)?.python()?;
+    let DensityMatch { correlation, strays, worst, .. } = measured(py, threads, measure)?.python()?;
     let block = (worst.deviation, worst.column, worst.row, worst.side, worst.points, worst.expected);
     Ok(((correlation, strays), block))
 }
