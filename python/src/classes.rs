@@ -235,7 +235,7 @@ impl PyClasses {
         match (&self.0, OwnClasses::of(&self.0)) {
             (_, Some(own)) => {
                 let (classes, samples) = (own.starts.len() - 1, own.samples.len());
-                Ok(format!("<Classes.listed '{}': {classes} classes, {samples} samples>", own.name))
+                Ok(format!("<Classes.listed '{}': {classes} classes, {samples} samples>", own.given))
             }
             (Classes::Labelled { labels, subsets }, _) => {
                 Ok(format!("<Classes.labelled: {} samples, {} classes>", labels.len(), subsets.len()))
@@ -254,7 +254,7 @@ impl PyClasses {
         };
         let starts = own.starts.iter().map(|&start| start as u64).collect();
         let lists = (
-            &own.name,
+            &own.given,
             array(py, starts),
             array(py, own.samples.clone()),
             array(py, own.weights.clone()),

@@ -18,9 +18,9 @@ use crate::errors::refused;
 /// Classes as lists, one after the other.
 #[derive(Debug, PartialEq)]
 pub struct OwnClasses {
-    pub name: String,
-    /// The name with a digest of the lists: a checkpoint and metadata know them by it.
-    label: String,
+    pub given: String,
+    /// The name given, with a digest of the lists: a checkpoint and metadata know them by it.
+    name: String,
     /// Where each class begins among the samples, and the end of the last.
     pub starts: Vec<usize>,
     pub samples: Vec<u32>,
@@ -32,7 +32,7 @@ pub struct OwnClasses {
 
 impl OwnClasses {
     pub fn new(
-        name: String,
+        given: String,
         starts: Vec<usize>,
         samples: Vec<u32>,
         weights: Vec<f64>,
@@ -41,8 +41,8 @@ impl OwnClasses {
         let whole =
             starts.iter().map(|&start| start as u64).chain(samples.iter().map(|&sample| sample.into()));
         let numbers = weights.iter().chain(&emphases).map(|weight| weight.to_bits());
-        let label = labelled(&name, whole.chain(numbers));
-        Self { name, label, starts, samples, weights, emphases }
+        let name = labelled(&given, whole.chain(numbers));
+        Self { given, name, starts, samples, weights, emphases }
     }
 
     /// The lists of these classes, if they are such.
@@ -56,7 +56,7 @@ impl OwnClasses {
 
 impl ClassFamily for OwnClasses {
     fn name(&self) -> &str {
-        &self.label
+        &self.name
     }
 
     fn members(&self, _: &Extent) -> usize {
@@ -73,9 +73,9 @@ impl ClassFamily for OwnClasses {
 
 /// A target by its quantile functions.
 pub struct OwnTarget {
-    pub name: String,
-    /// The name, with a digest of a table.
-    label: String,
+    pub given: String,
+    /// The name given, with a digest of a table.
+    name: String,
     pub dims: usize,
     pub law: Law,
     /// Laws that a function has given, by the bits of their directions: it is asked once for each.
@@ -104,12 +104,12 @@ impl fmt::Debug for OwnTarget {
 }
 
 impl OwnTarget {
-    pub fn new(name: String, dims: usize, law: Law) -> Self {
-        let label = match &law {
-            Law::Table(values) => labelled(&name, values.iter().map(|value| value.to_bits())),
-            Law::Function(_) => name.clone(),
+    pub fn new(given: String, dims: usize, law: Law) -> Self {
+        let name = match &law {
+            Law::Table(values) => labelled(&given, values.iter().map(|value| value.to_bits())),
+            Law::Function(_) => given.clone(),
         };
-        Self { name, label, dims, law, known: Mutex::default(), raised: Mutex::default() }
+        Self { given, name, dims, law, known: Mutex::default(), raised: Mutex::default() }
     }
 
     /// The quantiles of this target, if it is such.
@@ -144,7 +144,7 @@ impl OwnTarget {
 
 impl Measure for OwnTarget {
     fn name(&self) -> &str {
-        &self.label
+        &self.name
     }
 
     fn dims(&self) -> usize {

@@ -163,7 +163,7 @@ impl PyTarget {
                 format!("<Target.cloud: {} points of {dims} dimensions>", cloud.points().len() / dims)
             }
             other => match OwnTarget::of(other) {
-                Some(own) => format!("<Target.quantiles '{}': {} dimensions>", own.name, own.dims),
+                Some(own) => format!("<Target.quantiles '{}': {} dimensions>", own.given, own.dims),
                 None => format!("<Target of {}>", self.kind()),
             },
         }
@@ -178,7 +178,7 @@ impl PyTarget {
             Law::Table(values) => array(py, values.clone()).into_any(),
             Law::Function(function) => function.bind(py).clone(),
         };
-        Ok((of_type("_of_quantiles")?, (quantiles, own.dims, &own.name).into_pyobject(py)?))
+        Ok((of_type("_of_quantiles")?, (quantiles, own.dims, &own.given).into_pyobject(py)?))
     }
 
     /// What `__reduce__` has written.
