@@ -50,13 +50,22 @@ def points_of(tables: torch.Tensor) -> torch.Tensor:
     return tables.permute(0, 2, 3, 1)
 
 
-def train(network: Network, size: int, seconds: float, seed: int, batch: int = 2) -> int:
-    """Adam for so many seconds; returns how many steps that were."""
-    objective = fsot.Objective(fsot.Config(size, size, seed=seed))
+def all_descend(config: fsot.Config, share: float = 0.3) -> fsot.Config:
+    """What fsot balances after each of its steps, a loss can only descend, with this share of the work."""
+    balanced = [term for term in config.terms if term.role == "balance"]
+    rest = [term for term in config.terms if term.role == "descend"]
+    weight = share / len(balanced)
+    descending = [fsot.Term(term.classes, dims=term.dims, weight=weight) for term in balanced]
+    return config.with_terms(rest + descending)
+
+
+def train(network: Network, size: int, seconds: float, most: int | None, seed: int, batch: int = 2) -> int:
+    """Adam for so many seconds, or steps; returns how many steps that were."""
+    objective = fsot.Objective(all_descend(fsot.Config(size, size)))
     generator = torch.Generator().manual_seed(seed)
     adam = torch.optim.Adam(network.parameters())
     begin, step = time.perf_counter(), 0
-    while (share := (time.perf_counter() - begin) / seconds) < 1:
+    while (share := step / most if most else (time.perf_counter() - begin) / seconds) < 1:
         adam.param_groups[0]["lr"] = 0.003 * 0.03**share
         noise = torch.rand(batch, 2, size, size, generator=generator)
         points = points_of(network(noise))
@@ -83,6 +92,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--size", type=int, default=32, help="pixels of a side, in training")
     parser.add_argument("--seconds", type=float, default=100, help="of training")
+    parser.add_argument("--steps", type=int, help="of training, instead of seconds")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", help="where a table that the network makes goes, a .npy")
     arguments = parser.parse_args()
@@ -91,7 +101,7 @@ def main() -> None:
     torch.set_num_threads(1)
     torch.manual_seed(arguments.seed)
     network = Network(dims=2)
-    steps = train(network, arguments.size, arguments.seconds, arguments.seed)
+    steps = train(network, arguments.size, arguments.seconds, arguments.steps, arguments.seed)
     print(f"{steps} steps, {sum(weights.numel() for weights in network.parameters())} weights")
     integrands = fsot.metrics.Integrands.random(2, seed=2**40)
     print(f"{'of white noise:':24} filtered error  one pixel   bias")

@@ -172,7 +172,7 @@ impl PyClasses {
     /// weights : sequence of float, optional
     ///     Weights of the pull of each class, from 1e-12 to 1e6; 1 by default.
     /// name : str
-    ///     Name for messages and metadata.
+    ///     Name for messages and metadata, which add a digest of the lists.
     ///
     /// Examples
     /// --------
@@ -183,21 +183,16 @@ impl PyClasses {
     #[staticmethod]
     #[pyo3(signature = (members, weights = None, *, name = "listed"))]
     fn listed(members: &Bound<'_, PyAny>, weights: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<Self> {
-        let mut own = OwnClasses {
-            name: name.into(),
-            starts: vec![0],
-            samples: Vec::new(),
-            weights: Vec::new(),
-            emphases: Vec::new(),
-        };
+        let mut own = Lists { name, starts: vec![0], samples: Vec::new(), weights: Vec::new() };
         for member in members.try_iter()? {
             add_member(&member?, &mut own)?;
         }
-        own.emphases = weights_of(weights, own.starts.len() - 1)?;
+        let emphases = weights_of(weights, own.starts.len() - 1)?;
         if own.samples.is_empty() {
             return Err(refused(ClassError::Empty { family: "the caller's classes" }));
         }
-        Ok(Self(Classes::custom(own)))
+        let Lists { starts, samples, weights, .. } = own;
+        Ok(Self(Classes::custom(OwnClasses::new(name.into(), starts, samples, weights, emphases))))
     }
 
     /// Which family: ``"lattice"``, ``"whole_table"``, ``"per_frame"``, ``"per_pixel"``, ``"labelled"``,
@@ -240,7 +235,7 @@ impl PyClasses {
         match (&self.0, OwnClasses::of(&self.0)) {
             (_, Some(own)) => {
                 let (classes, samples) = (own.starts.len() - 1, own.samples.len());
-                Ok(format!("<Classes.listed '{}': {classes} classes, {samples} samples>", own.name))
+                Ok(format!("<Classes.listed '{}': {classes} classes, {samples} samples>", own.given))
             }
             (Classes::Labelled { labels, subsets }, _) => {
                 Ok(format!("<Classes.labelled: {} samples, {} classes>", labels.len(), subsets.len()))
@@ -259,7 +254,7 @@ impl PyClasses {
         };
         let starts = own.starts.iter().map(|&start| start as u64).collect();
         let lists = (
-            &own.name,
+            &own.given,
             array(py, starts),
             array(py, own.samples.clone()),
             array(py, own.weights.clone()),
@@ -285,7 +280,7 @@ impl PyClasses {
             && starts.last() == Some(&samples.len())
             && starts.windows(2).all(|pair| pair[0] <= pair[1]);
         match is_sound {
-            true => Ok(Self(Classes::custom(OwnClasses { name, starts, samples, weights, emphases }))),
+            true => Ok(Self(Classes::custom(OwnClasses::new(name, starts, samples, weights, emphases)))),
             false => Err(refused("the pickled classes are damaged: pickle them again")),
         }
     }
@@ -323,7 +318,16 @@ fn prefix_of(length: &Bound<'_, PyAny>) -> PyResult<PrefixLength> {
     }
 }
 
-fn add_member(member: &Bound<'_, PyAny>, own: &mut OwnClasses) -> PyResult<()> {
+/// Classes as they are read.
+struct Lists<'a> {
+    name: &'a str,
+    starts: Vec<usize>,
+    samples: Vec<u32>,
+    /// Empty as long as all are 1.
+    weights: Vec<f64>,
+}
+
+fn add_member(member: &Bound<'_, PyAny>, own: &mut Lists<'_>) -> PyResult<()> {
     let number = own.starts.len() - 1;
     let refuse = |sentence: String| Err(refused(format!("class {number} of \"{}\" {sentence}", own.name)));
     let pair = member.cast::<PyTuple>().ok().filter(|pair| pair.len() == 2);
@@ -345,7 +349,7 @@ fn add_member(member: &Bound<'_, PyAny>, own: &mut OwnClasses) -> PyResult<()> {
         }
         let bad = samples.iter().zip(&weights).find(|(_, weight)| !(0.0..=1.0).contains(*weight));
         if let Some((&sample, &weight)) = bad {
-            let (name, member) = (own.name.as_str().into(), number as u32);
+            let (name, member) = (own.name.into(), number as u32);
             let problem = "give weights in [0, 1]";
             return Err(refused(ClassError::Custom { name, member, sample, weight, problem }));
         }

@@ -18,7 +18,9 @@ use crate::errors::refused;
 /// Classes as lists, one after the other.
 #[derive(Debug, PartialEq)]
 pub struct OwnClasses {
-    pub name: String,
+    pub given: String,
+    /// The name given, with a digest of the lists: a checkpoint and metadata know them by it.
+    name: String,
     /// Where each class begins among the samples, and the end of the last.
     pub starts: Vec<usize>,
     pub samples: Vec<u32>,
@@ -29,6 +31,20 @@ pub struct OwnClasses {
 }
 
 impl OwnClasses {
+    pub fn new(
+        given: String,
+        starts: Vec<usize>,
+        samples: Vec<u32>,
+        weights: Vec<f64>,
+        emphases: Vec<f64>,
+    ) -> Self {
+        let whole =
+            starts.iter().map(|&start| start as u64).chain(samples.iter().map(|&sample| sample.into()));
+        let numbers = weights.iter().chain(&emphases).map(|weight| weight.to_bits());
+        let name = labelled(&given, whole.chain(numbers));
+        Self { given, name, starts, samples, weights, emphases }
+    }
+
     /// The lists of these classes, if they are such.
     pub fn of(classes: &Classes) -> Option<&Self> {
         match classes {
@@ -57,7 +73,9 @@ impl ClassFamily for OwnClasses {
 
 /// A target by its quantile functions.
 pub struct OwnTarget {
-    pub name: String,
+    pub given: String,
+    /// The name given, with a digest of a table.
+    name: String,
     pub dims: usize,
     pub law: Law,
     /// Laws that a function has given, by the bits of their directions: it is asked once for each.
@@ -86,8 +104,12 @@ impl fmt::Debug for OwnTarget {
 }
 
 impl OwnTarget {
-    pub fn new(name: String, dims: usize, law: Law) -> Self {
-        Self { name, dims, law, known: Mutex::default(), raised: Mutex::default() }
+    pub fn new(given: String, dims: usize, law: Law) -> Self {
+        let name = match &law {
+            Law::Table(values) => labelled(&given, values.iter().map(|value| value.to_bits())),
+            Law::Function(_) => given.clone(),
+        };
+        Self { given, name, dims, law, known: Mutex::default(), raised: Mutex::default() }
     }
 
     /// The quantiles of this target, if it is such.
@@ -158,6 +180,15 @@ impl Measure for OwnTarget {
             }
         }
     }
+}
+
+/// A name with a digest (FNV-1a) of numbers.
+fn labelled(name: &str, numbers: impl Iterator<Item = u64>) -> String {
+    let digest = numbers.fold(0xcbf2_9ce4_8422_2325_u64, |digest, number| {
+        let add = |digest: u64, byte| (digest ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        number.to_le_bytes().into_iter().fold(digest, add)
+    });
+    format!("{name}#{:08x}", (digest >> 32) ^ (digest & 0xffff_ffff))
 }
 
 fn law(quantiles: &[f64]) -> Projected {

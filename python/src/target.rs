@@ -85,7 +85,8 @@ impl PyTarget {
     /// dims : int
     ///     Number of dimensions.
     /// name : str
-    ///     Name for messages and metadata.
+    ///     Name for messages and metadata, which add a digest of an array. Functions should have names of
+    ///     their own, by which a checkpoint tells them apart.
     ///
     /// Examples
     /// --------
@@ -162,7 +163,7 @@ impl PyTarget {
                 format!("<Target.cloud: {} points of {dims} dimensions>", cloud.points().len() / dims)
             }
             other => match OwnTarget::of(other) {
-                Some(own) => format!("<Target.quantiles '{}': {} dimensions>", own.name, own.dims),
+                Some(own) => format!("<Target.quantiles '{}': {} dimensions>", own.given, own.dims),
                 None => format!("<Target of {}>", self.kind()),
             },
         }
@@ -177,7 +178,7 @@ impl PyTarget {
             Law::Table(values) => array(py, values.clone()).into_any(),
             Law::Function(function) => function.bind(py).clone(),
         };
-        Ok((of_type("_of_quantiles")?, (quantiles, own.dims, &own.name).into_pyobject(py)?))
+        Ok((of_type("_of_quantiles")?, (quantiles, own.dims, &own.given).into_pyobject(py)?))
     }
 
     /// What `__reduce__` has written.

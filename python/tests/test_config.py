@@ -107,9 +107,9 @@ class TestOwn:
     def test_json_holds_their_names_and_is_not_read_back(self):
         config = own_config()
         data = config.to_dict()
-        assert data["terms"][0]["classes"] == {"custom": "mine"}
+        assert data["terms"][0]["classes"]["custom"].startswith("mine#")
         assert data["terms"][0]["target"] == {"custom": "theirs"}
-        with pytest.raises(ValueError, match='"mine" is code.*add the term again with Classes.listed'):
+        with pytest.raises(ValueError, match='"mine#[0-9a-f]{8}" is code.*again with Classes.listed'):
             fsot.Config.from_dict(data)
 
     def test_a_table_of_theirs_has_metadata(self):
@@ -128,6 +128,23 @@ class TestOwn:
         other.resume(checkpoints[2])
         other.finish(progress=False)
         assert numpy.array_equal(other.points, optimizer.points)
+
+    def test_a_checkpoint_of_other_lists_is_refused(self):
+        """Both are called the same."""
+        configs = [
+            fsot.Config.points(4, 2, [fsot.Term(fsot.Classes.listed([lists]), dims=[0, 1])])
+            for lists in ([0, 1], [0, 2])
+        ]
+        checkpoint = fsot.Optimizer(configs[0]).checkpoint()
+        with pytest.raises(ValueError, match="configuration"):
+            fsot.Optimizer(configs[1]).resume(checkpoint)
+        fsot.Optimizer(pickle.loads(pickle.dumps(configs[0]))).resume(checkpoint)
+
+    def test_names_tell_arrays_apart(self):
+        names = {
+            str(fsot.Target.quantiles(values).to_dict()) for values in ([0, 1], [0, 0.5], [0, 0.5, 1], [0, 1])
+        }
+        assert len(names) == 3
 
 
 class TestSettings:
