@@ -137,7 +137,7 @@ def test_sources_fit_the_page():
             if path.suffix not in {".py", ".pyi", ".rs"}:
                 continue
             lines = path.read_text().splitlines()
-            if len(lines) > 400 and folder != "tests":
+            if len(lines) > 400 and folder != "tests" and path.suffix != ".pyi":
                 long.append(f"{path} has {len(lines)} lines")
             most = 110 if path.suffix == ".rs" else 120
             wide = (at for at, line in enumerate(lines, 1) if len(line) > most)
