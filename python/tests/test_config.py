@@ -196,10 +196,11 @@ class TestSettings:
             (lambda c: c.with_terms([]), ValueError, "no term with a positive weight: give at least one"),
             (lambda c: c.with_terms([fsot.Term(LATTICE, dims=[5])]), ValueError, "term 0: the dim"),
             (lambda c: c.with_terms(["lattice"]), TypeError, "Term"),
-            (lambda c: c.with_terms(None), TypeError, "terms"),
+            # Notes name the argument, from Python 3.11 on.
+            (lambda c: c.with_terms(None), TypeError, "terms|NoneType"),
             (lambda c: fsot.Config.points(4, 1, [fsot.Term(LATTICE, dims=[0, 1])]), ValueError, "dimension"),
             (lambda c: c.with_form("soft"), ValueError, "write level_sets or weighted"),
-            (lambda c: c.with_form(3), TypeError, "form"),
+            (lambda c: c.with_form(3), TypeError, "form|of 'str'"),
             (lambda c: c.with_groups([[0, 7]]), ValueError, "names dimension 7, but the table has 2"),
             (lambda c: c.with_groups([[]]), ValueError, "the dimension group is empty"),
             (lambda c: c.with_groups(3), TypeError, "iterable"),
