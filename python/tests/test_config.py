@@ -197,7 +197,7 @@ class TestSettings:
             (lambda c: c.with_terms([fsot.Term(LATTICE, dims=[5])]), ValueError, "term 0: the dim"),
             (lambda c: c.with_terms(["lattice"]), TypeError, "Term"),
             # Notes name the argument, from Python 3.11 on.
-            (lambda c: c.with_terms(None), TypeError, "terms|NoneType"),
+            (lambda c: c.with_terms(None), TypeError, "terms|'None'"),
             (lambda c: fsot.Config.points(4, 1, [fsot.Term(LATTICE, dims=[0, 1])]), ValueError, "dimension"),
             (lambda c: c.with_form("soft"), ValueError, "write level_sets or weighted"),
             (lambda c: c.with_form(3), TypeError, "form|of 'str'"),
