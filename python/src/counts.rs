@@ -43,8 +43,8 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Count {
     }
 }
 
-/// A number may have a million digits.
+/// A number may have a million digits, and an object of somebody else's any text.
 fn short(object: &Borrowed<'_, '_, PyAny>) -> String {
     let text = object.str().map_or_else(|_| "the number".into(), |text| text.to_string());
-    if text.len() > 40 { format!("{}...", &text[..20]) } else { text }
+    if text.chars().nth(40).is_none() { text } else { text.chars().take(20).chain("...".chars()).collect() }
 }

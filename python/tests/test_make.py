@@ -139,6 +139,15 @@ def test_what_cannot_be_is_refused(settings, error, sentence):
         fsot.table(**settings)
 
 
+def test_a_number_may_say_anything_of_itself():
+    class Long(int):
+        def __str__(self):
+            return "é" * 50
+
+    with pytest.raises(ValueError, match="é{20}... is out of range"):
+        fsot.table(8, 8, seed=Long(-1))
+
+
 def test_no_memory_is_refused_in_words():
     # 2^31 - 1 values are the most of a table; few machines hold what their optimiser takes.
     with pytest.raises((ValueError, MemoryError), match="."):
