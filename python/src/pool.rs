@@ -4,10 +4,10 @@ use std::collections::HashMap;
 use std::mem;
 use std::ops::Deref;
 use std::process;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 use pyo3::PyResult;
-use pyo3::exceptions::PyRuntimeError;
+use pyo3::exceptions::{PyRecursionError, PyRuntimeError};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::errors::refused;
@@ -15,11 +15,21 @@ use crate::errors::refused;
 /// Most threads of a pool.
 const MOST: usize = 1024;
 
-/// Pools that nobody uses, by number of threads, 0 standing for one thread a core, and the process that made
-/// them.
-type Idle = (u32, HashMap<usize, Vec<ThreadPool>>);
+/// Most pools at the same time. A function that a run calls, and that starts such a run, would go on until the
+/// system has no more threads.
+const MOST_POOLS: usize = 128;
 
-static IDLE: Mutex<Option<Idle>> = Mutex::new(None);
+/// The pools of a process.
+struct Pools {
+    /// Which made them.
+    process: u32,
+    /// Those that nobody uses, by number of threads, 0 standing for one thread a core.
+    idle: HashMap<usize, Vec<ThreadPool>>,
+    /// How many are in use.
+    used: usize,
+}
+
+static POOLS: Mutex<Option<Pools>> = Mutex::new(None);
 
 /// A pool that is one caller's own until this is dropped.
 #[derive(Debug)]
@@ -37,7 +47,7 @@ impl Pool {
     /// thread all the while, and a pool that both share might have no other.
     ///
     /// # Errors
-    /// A number out of range; a system that gives no more threads.
+    /// A number out of range; too many pools at the same time; a system that gives no more threads.
     pub fn of(threads: Option<usize>) -> PyResult<Self> {
         if let Some(threads) = threads.filter(|threads| !(1..=MOST).contains(threads)) {
             return Err(refused(format!(
@@ -45,17 +55,28 @@ impl Pool {
             )));
         }
         let (threads, process) = (threads.unwrap_or(0), process::id());
-        if let Some(pool) = idle(process).as_mut().and_then(|(_, pools)| pools.get_mut(&threads)?.pop()) {
-            return Ok(Self { threads, process, pool: Some(pool) });
-        }
-        let pool =
-            ThreadPoolBuilder::new().num_threads(threads).thread_name(|at| format!("fsot-{at}")).build();
-        let pool = pool.map_err(|error| {
-            PyRuntimeError::new_err(format!(
-                "the system gives no threads: {error}; ask for fewer with threads="
-            ))
+        let idle = with_pools(process, |pools| {
+            if pools.used == MOST_POOLS {
+                return Err(PyRecursionError::new_err(format!(
+                    "{MOST_POOLS} runs go on inside of each other or at once: let some end, and see to it \
+                     that no function which a run calls starts that run again"
+                )));
+            }
+            pools.used += 1;
+            Ok(pools.idle.get_mut(&threads).and_then(Vec::pop))
         })?;
-        Ok(Self { threads, process, pool: Some(pool) })
+        // Counted from here on, so that what is refused is counted back.
+        let mut own = Self { threads, process, pool: idle };
+        if own.pool.is_none() {
+            let name = |at| format!("fsot-{at}");
+            let pool = ThreadPoolBuilder::new().num_threads(threads).thread_name(name).build();
+            own.pool = Some(pool.map_err(|error| {
+                PyRuntimeError::new_err(format!(
+                    "the system gives no threads: {error}; ask for fewer with threads="
+                ))
+            })?);
+        }
+        Ok(own)
     }
 }
 
@@ -69,25 +90,26 @@ impl Deref for Pool {
 
 impl Drop for Pool {
     fn drop(&mut self) {
-        let Some(pool) = self.pool.take() else { return };
+        let pool = self.pool.take();
         if self.process != process::id() {
             return mem::forget(pool);
         }
-        if let Some((_, pools)) = &mut *idle(self.process) {
-            pools.entry(self.threads).or_default().push(pool);
-        }
+        with_pools(self.process, |pools| {
+            pools.used -= 1;
+            pools.idle.entry(self.threads).or_default().extend(pool);
+        });
     }
 }
 
-/// The idle pools of this process.
+/// Looks at the pools of this process.
 ///
 /// One that was forked, as `multiprocessing` does, has none of its parent's threads and would wait for them
 /// for ever; it begins with no pool. That is also why nothing here uses rayon's global pool.
-fn idle(process: u32) -> MutexGuard<'static, Option<Idle>> {
-    let mut idle = IDLE.lock().unwrap_or_else(PoisonError::into_inner);
-    if idle.as_ref().is_none_or(|(made_by, _)| *made_by != process) {
+fn with_pools<T>(process: u32, look: impl FnOnce(&mut Pools) -> T) -> T {
+    let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
+    if pools.as_ref().is_none_or(|pools| pools.process != process) {
         // Dropping a pool would tell threads to end that this process does not have.
-        mem::forget(idle.replace((process, HashMap::new())));
+        mem::forget(pools.replace(Pools { process, idle: HashMap::new(), used: 0 }));
     }
-    idle
+    look(pools.as_mut().expect("they have just been made"))
 }

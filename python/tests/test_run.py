@@ -114,6 +114,17 @@ def test_a_run_may_start_another():
     assert inside == 3 * [small()]
 
 
+def test_a_run_that_starts_itself_ends():
+    def again(step):
+        small(threads=1, callback=again)
+
+    with pytest.raises(RecursionError, match="inside of each other"):
+        again(None)
+    # All that they had is given back.
+    for _ in range(200):
+        small(threads=1)
+
+
 @pytest.mark.parametrize("threads", [1, 2, 3])
 def test_threads_change_nothing(threads):
     assert small(threads=threads) == small()
