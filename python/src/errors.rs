@@ -22,7 +22,21 @@ impl<T, E: Error + 'static> OrPython<T> for Result<T, E> {
 
 /// A refusal of the caller's values.
 pub fn refused(sentence: impl ToString) -> PyErr {
-    PyValueError::new_err(sentence.to_string())
+    PyValueError::new_err(in_python(sentence.to_string()))
+}
+
+/// What sentences of the library call something, and what Python calls it.
+const NAMES: [(&str, &str); 3] = [
+    ("Classes::custom", "Classes.listed"),
+    ("Target::custom", "Target.quantiles"),
+    ("SampleTable::import", "fsot.import_table"),
+];
+
+fn in_python(sentence: String) -> String {
+    NAMES.iter().fold(sentence, |sentence, (name, python)| match sentence.contains(name) {
+        true => sentence.replace(name, python),
+        false => sentence,
+    })
 }
 
 /// A failure of the command's.
@@ -32,7 +46,7 @@ pub fn failed(failure: &(dyn Error + Send + Sync + 'static)) -> PyErr {
 
 fn exception(error: &(dyn Error + 'static)) -> PyErr {
     match refusal_of_system(error) {
-        Some(number) => PyOSError::new_err((number, error.to_string())),
+        Some(number) => PyOSError::new_err((number, in_python(error.to_string()))),
         None => refused(error),
     }
 }
@@ -52,8 +66,10 @@ fn refusal_of_system(error: &(dyn Error + 'static)) -> Option<i32> {
 /// A refusal of the system's, in these words.
 pub fn of_system(refusal: &io::Error, sentence: String) -> PyErr {
     match number_of(refusal) {
-        Some(number) => PyOSError::new_err((number, sentence)),
-        None => PyOSError::new_err(sentence),
+        Some(number) => PyOSError::new_err((number, in_python(sentence))),
+        // It was not asked: the name of the file is none.
+        None if refusal.kind() == ErrorKind::InvalidInput => refused(sentence),
+        None => PyOSError::new_err(in_python(sentence)),
     }
 }
 
