@@ -1,6 +1,6 @@
 //! Whole numbers of Python's, which have no end and a sign.
 
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 /// How many: from 0 on.
@@ -15,18 +15,19 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Number {
     type Error = PyErr;
 
     fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        let none = || PyTypeError::new_err(format!("{} is no whole number: give one", short(&object)));
         // True is no number of anything.
         if object.extract::<bool>().is_ok() {
-            return Err(PyTypeError::new_err(format!("{} is no whole number: give one", object.repr()?)));
+            return Err(none());
         }
         object.extract::<u64>().map(Self).map_err(|error| {
-            match error.is_instance_of::<pyo3::exceptions::PyOverflowError>(object.py()) {
-                true => PyValueError::new_err(format!(
+            if error.is_instance_of::<PyOverflowError>(object.py()) {
+                return PyValueError::new_err(format!(
                     "{} is out of range: give a whole number from 0 to 2**64 - 1",
                     short(&object)
-                )),
-                false => error,
+                ));
             }
+            if error.is_instance_of::<PyTypeError>(object.py()) { none() } else { error }
         })
     }
 }
@@ -45,6 +46,6 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Count {
 
 /// A number may have a million digits, and an object of somebody else's any text.
 fn short(object: &Borrowed<'_, '_, PyAny>) -> String {
-    let text = object.str().map_or_else(|_| "the number".into(), |text| text.to_string());
+    let text = object.repr().map_or_else(|_| "the number".into(), |text| text.to_string());
     if text.chars().nth(40).is_none() { text } else { text.chars().take(20).chain("...".chars()).collect() }
 }

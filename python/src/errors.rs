@@ -3,6 +3,7 @@
 use std::error::Error;
 use std::io::{self, ErrorKind};
 
+use fsot::files::{FormatError, TableError};
 use fsot::optimizer::CheckpointError;
 use pyo3::PyErr;
 use pyo3::exceptions::{PyOSError, PyValueError};
@@ -26,7 +27,8 @@ pub fn refused(sentence: impl ToString) -> PyErr {
 }
 
 /// What sentences of the library call something, and what Python calls it.
-const NAMES: [(&str, &str); 3] = [
+const NAMES: [(&str, &str); 4] = [
+    ("Checkpoint::config", "Checkpoint.config"),
     ("Classes::custom", "Classes.listed"),
     ("Target::custom", "Target.quantiles"),
     ("SampleTable::import", "fsot.import_table"),
@@ -51,11 +53,17 @@ fn exception(error: &(dyn Error + 'static)) -> PyErr {
     }
 }
 
+/// The system's number of it.
+const IS_A_DIRECTORY: i32 = 21;
+
 /// The number of the system's refusal, if this is one.
 fn refusal_of_system(error: &(dyn Error + 'static)) -> Option<i32> {
+    if let Some(TableError::Format { path, problem: FormatError::NotAFile }) = error.downcast_ref() {
+        return path.is_dir().then_some(IS_A_DIRECTORY);
+    }
     // A checkpoint's error shows what it wraps, and so doesn't name it as its source.
-    if let Some(CheckpointError::File { problem, .. }) = error.downcast_ref() {
-        return refusal_of_system(&**problem);
+    if let Some(CheckpointError::File { problem, path, .. }) = error.downcast_ref() {
+        return refusal_of_system(&**problem).or_else(|| path.is_dir().then_some(IS_A_DIRECTORY));
     }
     match error.downcast_ref::<io::Error>() {
         Some(error) => number_of(error),
@@ -82,7 +90,7 @@ fn number_of(refusal: &io::Error) -> Option<i32> {
         ErrorKind::NotFound => Some(2),
         ErrorKind::PermissionDenied => Some(13),
         ErrorKind::NotADirectory => Some(20),
-        ErrorKind::IsADirectory => Some(21),
+        ErrorKind::IsADirectory => Some(IS_A_DIRECTORY),
         _ => None,
     }
 }

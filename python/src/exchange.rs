@@ -8,7 +8,7 @@ use fsot::SampleTable;
 use fsot::files::{Axis, Dtype, ExportOptions, Exported, Format, ImportOptions, Imported};
 use pyo3::prelude::*;
 
-use crate::arrays::{table_of, table_to_numpy};
+use crate::arrays::{table_of, table_to_read};
 use crate::counts::{Count, Number};
 use crate::errors::{OrPython, refused};
 use crate::json;
@@ -98,5 +98,5 @@ pub fn import_table<'py>(
     let Imported { table, dtype, shape, axes, levels, first_level, ones, left_out, record, .. } = imported;
     let axes = axes.iter().map(|axis| axis.name()).collect();
     let taken = (sentence, dtype, shape, axes, levels, first_level, ones, left_out, record);
-    Ok((table_to_numpy(py, table)?, taken))
+    Ok((table_to_read(py, table)?, taken))
 }

@@ -178,6 +178,13 @@ pub fn set_of(points: &Bound<'_, PyAny>, labels: Option<&Bound<'_, PyAny>>) -> P
     let &[count, dims] = shape.as_slice() else {
         return Err(refused(format!("points of shape {shape:?}: give two axes [n, d]")));
     };
+    // Who has given the array may have written to it.
+    if let Some(at) = values.iter().position(|value| !(0.0..1.0).contains(value)) {
+        let (point, dim, value) = (at / dims, at % dims, values[at]);
+        return Err(refused(format!(
+            "coordinate {dim} of point {point} is {value}: give numbers from 0 to below 1"
+        )));
+    }
     let labels = match labels {
         Some(labels) => Numbers::<u32>::of(labels)?.values,
         None => vec![0; count],

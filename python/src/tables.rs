@@ -7,7 +7,7 @@ use fsot::{Extent, SampleTable};
 use pyo3::prelude::*;
 use serde_json::{Map, Value};
 
-use crate::arrays::{table_of, table_to_numpy};
+use crate::arrays::{table_of, table_to_read};
 use crate::errors::{OrPython, refused};
 use crate::json;
 use crate::work::left_alone;
@@ -118,7 +118,7 @@ pub fn load_table(
         SampleTable::load(&path).map(|table| (table, None))
     };
     let (table, metadata) = left_alone(py, None, load)?.python()?;
-    Ok((table_to_numpy(py, table)?, json::to_python(py, &metadata)?))
+    Ok((table_to_read(py, table)?, json::to_python(py, &metadata)?))
 }
 
 /// Refuses what is no table.
