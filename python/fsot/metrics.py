@@ -29,9 +29,9 @@ what is the error of each pixel, for one integrand?                         `err
 ==========================================================================  ============================
 
 Work runs without the interpreter's lock, on ``threads`` threads (one a core by default); results do not
-depend on their number. Ctrl-C raises `KeyboardInterrupt` at once, here as in `Table.inspect`, `Table.report` and
-`Kernel.taps`. Such work cannot be stopped: it is left alone, uses its threads and memory until it ends by itself
-or the process exits, and leaves nothing behind.
+depend on their number. Ctrl-C raises `KeyboardInterrupt` at once, here as in `Table.inspect`, `Table.report`
+and `Kernel.taps`. Such work cannot be stopped: it is left alone, uses its threads and memory until it ends by
+itself or the process exits, and leaves nothing behind.
 """
 
 from __future__ import annotations
