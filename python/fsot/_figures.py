@@ -10,7 +10,7 @@ from ._results import flat
 
 
 def flat_figures(found: dict[str, Any]) -> dict[str, Any]:
-    """One row of what ``fsot inspect --json`` says; what was not measured is NaN or left out."""
+    """One row of what ``fsot inspect --json`` says; what was not measured is None or left out."""
     frames, height, width, spp, dims = found["shape"]
     bound = found["bound"]
     row: dict[str, Any] = {
@@ -33,7 +33,7 @@ def flat_figures(found: dict[str, Any]) -> dict[str, Any]:
     return row
 
 
-def _of_group(group: dict[str, Any]) -> Iterator[tuple[str, float]]:
+def _of_group(group: dict[str, Any]) -> Iterator[tuple[str, float | None]]:
     for kind in ("error", "bias"):
         for name, ratios in group[kind].items():
             # Of a still, a frame is the table, and nothing is filtered in time.
@@ -58,11 +58,11 @@ def _of_group(group: dict[str, Any]) -> Iterator[tuple[str, float]]:
         yield f"power_y_over_x_{ring}", _number(ratio)
 
 
-def _estimate(name: str, estimate: dict[str, Any]) -> Iterator[tuple[str, float]]:
+def _estimate(name: str, estimate: dict[str, Any]) -> Iterator[tuple[str, float | None]]:
     yield name, _number(estimate["ratio"])
     yield f"{name}_se", _number(estimate["standard_error"])
 
 
-def _number(figure: float | str | None) -> float:
-    """JSON has no NaN: there it is `null`, or a text."""
-    return math.nan if figure is None else float(figure)
+def _number(figure: float | str | None) -> float | None:
+    """What is not defined is `null` in JSON, or a text: None, which can be a note of a table, as NaN can't."""
+    return None if figure is None or math.isnan(float(figure)) else float(figure)

@@ -326,6 +326,10 @@ def _made(
         "run": {"planning_seconds": planned, **optimizer._record()},
     }
     array = optimizer.points
+    # They are nobody else's.
+    for own in (array, label_of):
+        if own is not None:
+            own.flags.writeable = False
     return Points(array.reshape(-1, array.shape[-1]), label_of, metadata)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import numbers as kinds
 import operator
 import os
 from typing import Any
@@ -10,6 +12,7 @@ import numpy
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from . import _fsot
+from ._arrays import numbers, read_only
 from ._table import _count
 
 
@@ -74,7 +77,10 @@ class Points:
         To draw points: ``axes.scatter(points.array[:, 0] * points.aspect, points.array[:, 1])`` with equal
         axes, and ``axes.invert_yaxis()`` if they follow a picture.
         """
-        return float(self._metadata.get("aspect", 1.0))
+        aspect = self._metadata.get("aspect", 1.0)
+        if not isinstance(aspect, kinds.Real) or not 1e-4 <= float(aspect) <= 1e4:
+            raise ValueError(f"metadata['aspect'] is {aspect!r}: give width over height, from 1e-4 to 1e4")
+        return float(aspect)
 
     def of(self, *labels: int) -> NDArray[numpy.float32]:
         """The points with one of these labels, ``[m, d]``, a copy; points without labels have the label 0."""
@@ -119,7 +125,7 @@ class Points:
     __hash__ = None  # type: ignore[assignment]
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Points, (self._array, self._labels, self._metadata)
+        return Points, (self._array, self._labels, copy.deepcopy(self._metadata))
 
     def __repr__(self) -> str:
         count, dims = self._array.shape
@@ -135,38 +141,25 @@ class Points:
 
 
 def _coordinates(given: ArrayLike) -> NDArray[numpy.float32]:
-    array = _numbers(given, "coordinates")
+    array = numbers(given, "coordinates")
     if array.ndim != 2 or array.shape[1] == 0:
         raise ValueError(f"points of shape {array.shape}: give two axes [n, d]")
-    array = numpy.asarray(array, dtype=numpy.float32, order="C").view()
+    array = read_only(array, numpy.float32)
     outside = ~((array >= 0) & (array < 1))
     if outside.any():
         point, dim = (int(at) for at in numpy.argwhere(outside)[0])
         raise ValueError(
             f"coordinate {dim} of point {point} is {array[point, dim]}: give numbers from 0 to below 1"
         )
-    array.flags.writeable = False
     return array
 
 
 def _labels(given: ArrayLike, count: int) -> NDArray[numpy.uint32]:
-    array = _numbers(given, "labels")
+    array = numbers(given, "labels")
     if array.shape != (count,):
         raise ValueError(f"labels of shape {array.shape}: give one for each of the {count} points")
     if array.dtype.kind not in "bui" and not numpy.array_equal(array, numpy.floor(array)):
         raise ValueError("labels that are no whole numbers: give numbers from 0 to 2**32 - 1")
     if count and not (array.min() >= 0 and array.max() < 2**32):
         raise ValueError(f"labels from {array.min()} to {array.max()}: give numbers from 0 to 2**32 - 1")
-    array = numpy.asarray(array, dtype=numpy.uint32, order="C").view()
-    array.flags.writeable = False
-    return array
-
-
-def _numbers(given: ArrayLike, what: str) -> NDArray[Any]:
-    try:
-        array = numpy.asarray(given)
-    except (TypeError, ValueError) as error:
-        raise TypeError(f"no array of {what}: {error}; give one that numpy.asarray takes") from None
-    if array.dtype.kind not in "buif":
-        raise TypeError(f"{what} of dtype {array.dtype}: give real numbers")
-    return array
+    return read_only(array, numpy.uint32)

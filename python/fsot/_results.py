@@ -5,10 +5,12 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Iterable, Mapping
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy
 from numpy.typing import NDArray
+
+_Figure = TypeVar("_Figure", float, "float | None")
 
 
 class Estimate(NamedTuple):
@@ -284,9 +286,9 @@ class DensityMatch:
         return {"correlation": self.correlation, "strays": self.strays, "worst_deviation": worst}
 
 
-def flat(figures: Iterable[tuple[str, float]]) -> dict[str, float]:
+def flat(figures: Iterable[tuple[str, _Figure]]) -> dict[str, _Figure]:
     """A dictionary, of which no name stands for two figures."""
-    known: dict[str, float] = {}
+    known: dict[str, _Figure] = {}
     for name, figure in figures:
         if name in known:
             raise ValueError(f"two figures are called '{name}': give families other names")

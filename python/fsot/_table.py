@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import hashlib
 import operator
 import os
@@ -14,6 +15,7 @@ import numpy
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from . import _fsot, _glance
+from ._arrays import numbers, read_only, refuse_masked
 from ._figures import flat_figures
 
 if TYPE_CHECKING:
@@ -44,13 +46,8 @@ class Table:
     """
 
     def __init__(self, array: ArrayLike, metadata: Mapping[str, Any] | None = None):
-        array = numpy.asarray(array)
-        if array.dtype.kind not in "biuf":
-            raise TypeError(f"an array of dtype {array.dtype}: give real numbers")
-        array = numpy.asarray(array, dtype=numpy.float32, order="C").view()
-        _fsot.check_table(array)
-        array.flags.writeable = False
-        self._array: NDArray[numpy.float32] = array
+        self._array: NDArray[numpy.float32] = read_only(numbers(array, "numbers"), numpy.float32)
+        _fsot.check_table(self._array)
         self._metadata = dict(metadata or {})
 
     @property
@@ -117,7 +114,7 @@ class Table:
         >>> table.sample(y=3, x=16 + 5).tolist() == table.array[0, 3, 5, 0].tolist()
         True
         """
-        wrapped = [_whole(at) % length for at, length in zip((frame, y, x, sample), self.shape)]
+        wrapped = [_wrapped(at, length) for at, length in zip((frame, y, x, sample), self.shape)]
         found: NDArray[numpy.float32] = self._array[tuple(wrapped)]
         return found
 
@@ -211,7 +208,8 @@ class Table:
         dict
             A row of a study, ``pandas.DataFrame([table.inspect()])``: shape, and for the first two dimensions
             the names that `fsot.metrics` gives, such as ``error_spatial``, ``bias_table``, ``bound_ratio``;
-            ``_se`` are standard errors. Names of other groups of dimensions begin like ``dims_2_3.``.
+            ``_se`` are standard errors. Names of other groups of dimensions begin like ``dims_2_3.``. What is not
+            defined for such a table is None, so that figures can be notes: ``table.metadata["figures"]``.
         """
         found = _fsot.inspect_table(
             name, self._array, self._metadata or None, kernel, integrands, slices, seed, threads
@@ -314,7 +312,7 @@ class Table:
 
     def __reduce__(self) -> tuple[Any, ...]:
         # By what makes it: an array that is read alone can be written to.
-        return type(self), (self._array, self._metadata)
+        return type(self), (self._array, copy.deepcopy(self._metadata))
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Table) and numpy.array_equal(self._array, other._array)
@@ -340,17 +338,23 @@ class Table:
 
 def made(array: NDArray[numpy.float32], metadata: dict[str, Any]) -> Table:
     """A table, whose metadata say of which values they are: nobody else's may be saved with them."""
+    # It is nobody else's.
+    array.flags.writeable = False
     table = Table(array, metadata)
     little_endian = table.array.astype("<f4", copy=False)
     table.metadata["sha256"] = hashlib.sha256(little_endian.data).hexdigest()
     return table
 
 
-def _whole(number: ArrayLike) -> NDArray[numpy.integer[Any]]:
+def _wrapped(number: ArrayLike, length: int) -> int | NDArray[numpy.integer[Any]]:
+    if isinstance(number, int) and not isinstance(number, bool):
+        # Also what no array holds.
+        return number % length
+    refuse_masked(number, "indices")
     array = numpy.asarray(number)
     if array.dtype.kind not in "iu":
-        raise TypeError(f"an index of dtype {array.dtype}: give whole numbers")
-    return array
+        raise TypeError(f"an index of dtype {array.dtype}: give whole numbers from -2**63 to 2**64 - 1")
+    return array % length
 
 
 def _count(number: int, what: str) -> str:

@@ -29,7 +29,9 @@ what is the error of each pixel, for one integrand?                         `err
 ==========================================================================  ============================
 
 Work runs without the interpreter's lock, on ``threads`` threads (one a core by default); results do not
-depend on their number.
+depend on their number. Ctrl-C raises `KeyboardInterrupt` at once, here as in `Table.inspect`, `Table.report`
+and `Kernel.taps`. Such work cannot be stopped: it is left alone, uses its threads and memory until it ends by
+itself or the process exits, and leaves nothing behind.
 """
 
 from __future__ import annotations
@@ -257,8 +259,8 @@ def histogram(
 def discrepancy(samples: Samples, *, dims: Dims = None, threads: int | None = None) -> Discrepancy:
     """Squared L2-star discrepancy of a frame, by Warnock's formula.
 
-    The work grows by the square of the samples of a frame, and nothing interrupts it: 64 × 64 take some
-    10 ms, 256 × 256 some 5 s of a core.
+    The work grows by the square of the samples of a frame: 64 × 64 take some 10 ms, 256 × 256 some 5 s of a
+    core.
     """
     return Discrepancy(*_fsot.measure_discrepancy(samples, dims, threads))
 

@@ -24,6 +24,7 @@ impl<T: Element + Copy> Numbers<T> {
     /// A `TypeError` for anything but real numbers: complex ones, texts, objects, ragged lists.
     pub fn of(object: &Bound<'_, PyAny>) -> PyResult<Self> {
         let py = object.py();
+        refuse_masked(object)?;
         let numpy = py.import("numpy")?;
         let given = numpy.call_method1("asarray", (object,)).map_err(|error| {
             let sentence =
@@ -52,6 +53,12 @@ impl<T: Element + Copy> Numbers<T> {
     }
 }
 
+/// Refuses arrays, and lists of arrays, of which a part is masked: numpy would give what is below the mask.
+pub fn refuse_masked(object: &Bound<'_, PyAny>) -> PyResult<()> {
+    let refuse = object.py().import("fsot._arrays")?.getattr("refuse_masked")?;
+    refuse.call1((object, "numbers")).map(drop)
+}
+
 /// Gives an array to Python, without a copy.
 pub fn to_numpy<T: Element, D: Dimension>(py: Python<'_>, array: Array<T, D>) -> Bound<'_, PyArray<T, D>> {
     PyArray::from_owned_array(py, array)
@@ -62,6 +69,13 @@ pub fn table_to_numpy(py: Python<'_>, table: SampleTable) -> PyResult<Bound<'_, 
     let shape = table.shape();
     let array = Array::from_shape_vec(shape, table.into_values()).expect("a table fits its shape");
     Ok(to_numpy(py, array).into_any())
+}
+
+/// The same, of an array that nobody can write to.
+pub fn table_to_read(py: Python<'_>, table: SampleTable) -> PyResult<Bound<'_, PyAny>> {
+    let array = table_to_numpy(py, table)?;
+    array.getattr("flags")?.setattr("writeable", false)?;
+    Ok(array)
 }
 
 /// A table of an array `[frame, y, x, sample, dim]`.

@@ -1,7 +1,8 @@
 //! Whole numbers of Python's, which have no end and a sign.
 
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyString;
 
 /// How many: from 0 on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,18 +16,19 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Number {
     type Error = PyErr;
 
     fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        let none = || PyTypeError::new_err(format!("{} is no whole number: give one", short(object.repr())));
         // True is no number of anything.
         if object.extract::<bool>().is_ok() {
-            return Err(PyTypeError::new_err(format!("{} is no whole number: give one", object.repr()?)));
+            return Err(none());
         }
         object.extract::<u64>().map(Self).map_err(|error| {
-            match error.is_instance_of::<pyo3::exceptions::PyOverflowError>(object.py()) {
-                true => PyValueError::new_err(format!(
+            if error.is_instance_of::<PyOverflowError>(object.py()) {
+                return PyValueError::new_err(format!(
                     "{} is out of range: give a whole number from 0 to 2**64 - 1",
-                    short(&object)
-                )),
-                false => error,
+                    short(object.str())
+                ));
             }
+            if error.is_instance_of::<PyTypeError>(object.py()) { none() } else { error }
         })
     }
 }
@@ -44,7 +46,7 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Count {
 }
 
 /// A number may have a million digits, and an object of somebody else's any text.
-fn short(object: &Borrowed<'_, '_, PyAny>) -> String {
-    let text = object.str().map_or_else(|_| "the number".into(), |text| text.to_string());
+fn short(text: PyResult<Bound<'_, PyString>>) -> String {
+    let text = text.map_or_else(|_| "the number".into(), |text| text.to_string_lossy().into_owned());
     if text.chars().nth(40).is_none() { text } else { text.chars().take(20).chain("...".chars()).collect() }
 }

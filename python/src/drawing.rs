@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::points::set_of;
+use crate::work::left_alone;
 
 /// A PNG of points: of each label and of all where these are few classes, of prefixes of a sequence, or of a
 /// sheet.
@@ -20,12 +21,14 @@ pub fn draw_points<'py>(
     aspect: f64,
 ) -> PyResult<Bound<'py, PyBytes>> {
     let set = set_of(points, labels)?;
-    let inks: &[[u8; 3]] = match (labels.is_some(), kind) {
+    let inks: &'static [[u8; 3]] = match (labels.is_some(), kind) {
         (true, "color-stipple") => &points::PRINTERS_INKS,
         (true, _) => &points::CLASS_INKS,
         (false, _) => &[points::BLACK],
     };
-    let png = py.detach(|| -> io::Result<_> { draw(&Spot::all(&set, inks), kind, aspect).to_png() })?;
+    let kind = kind.to_owned();
+    let work = move || -> io::Result<_> { draw(&Spot::all(&set, inks), &kind, aspect).to_png() };
+    let png = left_alone(py, None, work)??;
     Ok(PyBytes::new(py, &png))
 }
 

@@ -8,11 +8,11 @@ use fsot::SampleTable;
 use fsot::files::{Axis, Dtype, ExportOptions, Exported, Format, ImportOptions, Imported};
 use pyo3::prelude::*;
 
-use crate::arrays::{table_of, table_to_numpy};
+use crate::arrays::{table_of, table_to_read};
 use crate::counts::{Count, Number};
 use crate::errors::{OrPython, refused};
 use crate::json;
-use crate::work::{Caller, watched};
+use crate::work::{Caller, left_alone, watched};
 
 /// An option by its name, refused as on a command line.
 fn named<T: FromStr<Err = String>>(what: &str, text: &str) -> PyResult<T> {
@@ -93,10 +93,10 @@ pub fn import_table<'py>(
         dtype: dtype.map(|dtype| named::<Dtype>("dtype", dtype)).transpose()?,
         array,
     };
-    let imported = py.detach(|| SampleTable::import(&path, &options)).python()?;
+    let imported = left_alone(py, None, move || SampleTable::import(&path, &options))?.python()?;
     let sentence = imported.to_string();
     let Imported { table, dtype, shape, axes, levels, first_level, ones, left_out, record, .. } = imported;
     let axes = axes.iter().map(|axis| axis.name()).collect();
     let taken = (sentence, dtype, shape, axes, levels, first_level, ones, left_out, record);
-    Ok((table_to_numpy(py, table)?, taken))
+    Ok((table_to_read(py, table)?, taken))
 }

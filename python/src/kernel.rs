@@ -10,6 +10,7 @@ use crate::arrays::{Numbers, to_numpy};
 use crate::counts::Count;
 use crate::errors::{OrPython, refused};
 use crate::json;
+use crate::work::left_alone;
 
 /// A filter over pixels and frames, under which errors are to be small.
 ///
@@ -144,7 +145,8 @@ impl PyKernel {
         frames: Count,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let extent = Extent { frames: frames.0, height: height.0, width: width.0, spp: 1 };
-        let taps = py.detach(|| self.0.taps(&extent)).python()?;
+        let kernel = self.0.clone();
+        let taps = left_alone(py, None, move || kernel.taps(&extent))?.python()?;
         Ok(rows(py, &taps))
     }
 

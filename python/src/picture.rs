@@ -8,7 +8,7 @@ use numpy::Element;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-use crate::arrays::Numbers;
+use crate::arrays::{Numbers, refuse_masked};
 use crate::counts::Count;
 use crate::errors::refused;
 
@@ -76,6 +76,7 @@ impl Picture {
             return Ok(Self::File(path));
         }
         refuse_palettes(object)?;
+        refuse_masked(object)?;
         let array = object.py().import("numpy")?.call_method1("asarray", (object,)).map_err(|error| {
             let word = error.value(object.py());
             PyTypeError::new_err(format!("no picture: {word}; give an array or the name of a file"))

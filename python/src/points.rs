@@ -21,7 +21,7 @@ use crate::errors::{OrPython, of_system, refused};
 use crate::json;
 use crate::picture::{Picture, Reading};
 use crate::settings::with_domain;
-use crate::work::detached;
+use crate::work::left_alone;
 
 type Labels<'py> = Option<Bound<'py, PyArray1<u32>>>;
 
@@ -127,7 +127,7 @@ pub fn plan_stippling<'py>(
     let reading = Reading::of(tone, transfer, layer, most_pixels, limit_pixels)?;
     let picture = Picture::of(picture)?;
     let threads = threads.map(|Count(threads)| threads);
-    let density = detached(py, threads, || picture.density(&reading))?.python()?;
+    let density = left_alone(py, threads, move || picture.density(&reading))?.python()?;
     let size = density.size();
     let config = Config::stippling(count.0, density).with_seed(seed.0);
     Ok((PyConfig(config), None, usual::STIPPLE_SLICES, aspect(size)))
@@ -151,7 +151,7 @@ pub fn plan_color_stippling<'py>(
     let reading = Reading::of("dark", transfer, layer, most_pixels, limit_pixels)?;
     let picture = Picture::of(picture)?;
     let threads = threads.map(|Count(threads)| threads);
-    let inks = detached(py, threads, || picture.inks(&reading))?.python()?;
+    let inks = left_alone(py, threads, move || picture.inks(&reading))?.python()?;
     // There is at least one, and all are of one size.
     let size = (0..4).find_map(|ink| inks.density(ink)).map_or([1, 1], |density| density.size());
     let config = Config::color_stippling(count.0, &inks).with_seed(seed.0);
@@ -178,6 +178,13 @@ pub fn set_of(points: &Bound<'_, PyAny>, labels: Option<&Bound<'_, PyAny>>) -> P
     let &[count, dims] = shape.as_slice() else {
         return Err(refused(format!("points of shape {shape:?}: give two axes [n, d]")));
     };
+    // Who has given the array may have written to it.
+    if let Some(at) = values.iter().position(|value| !(0.0..1.0).contains(value)) {
+        let (point, dim, value) = (at / dims, at % dims, values[at]);
+        return Err(refused(format!(
+            "coordinate {dim} of point {point} is {value}: give numbers from 0 to below 1"
+        )));
+    }
     let labels = match labels {
         Some(labels) => Numbers::<u32>::of(labels)?.values,
         None => vec![0; count],
@@ -201,7 +208,7 @@ pub fn save_points(
         return Err(refused(format!("{}: give a file name that ends in .npy or .csv", path.display())));
     }
     let set = set_of(points, labels)?;
-    let metadata: Value = json::of_python(metadata)?;
+    let metadata: Value = json::of_python_called("metadata", metadata)?;
     let write = || -> std::io::Result<()> {
         let coordinates = set.file(&path)?;
         let record = points::record_text(&set, &coordinates, &metadata)?;

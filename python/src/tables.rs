@@ -7,9 +7,10 @@ use fsot::{Extent, SampleTable};
 use pyo3::prelude::*;
 use serde_json::{Map, Value};
 
-use crate::arrays::{table_of, table_to_numpy};
+use crate::arrays::{table_of, table_to_read};
 use crate::errors::{OrPython, refused};
 use crate::json;
+use crate::work::left_alone;
 
 /// Writes a table, and its metadata beside it if there are any.
 #[pyfunction]
@@ -29,6 +30,7 @@ pub fn save_table(
         }
         None => table.save(&path),
     };
+    // Not left alone: a file that appears after Ctrl-C would surprise.
     py.detach(save).python()
 }
 
@@ -45,7 +47,7 @@ pub fn metadata_of(given: &Bound<'_, PyAny>, table: &SampleTable) -> PyResult<Me
 }
 
 fn fields_of(given: &Bound<'_, PyAny>, table: &SampleTable) -> PyResult<Map<String, Value>> {
-    let mut fields: Map<String, Value> = json::of_python(given)?;
+    let mut fields: Map<String, Value> = json::of_python_called("metadata", given)?;
     for (name, value) in blank(table) {
         fields.entry(name).or_insert(value);
     }
@@ -53,8 +55,7 @@ fn fields_of(given: &Bound<'_, PyAny>, table: &SampleTable) -> PyResult<Map<Stri
 }
 
 fn parsed(fields: Map<String, Value>) -> PyResult<Metadata> {
-    serde_json::from_value(Value::Object(fields))
-        .map_err(|error| refused(format!("metadata: {error}: correct that, or leave it out")))
+    json::parsed(Value::Object(fields), "metadata")
 }
 
 /// The same, of which nothing is lost.
@@ -110,14 +111,14 @@ pub fn load_table(
     metadata: bool,
 ) -> PyResult<(Bound<'_, PyAny>, Bound<'_, PyAny>)> {
     let has_metadata = metadata && Metadata::path_beside(&path).exists();
-    let load = || -> Result<_, TableError> {
+    let load = move || -> Result<_, TableError> {
         if has_metadata {
             return SampleTable::load_with(&path).map(|(table, metadata)| (table, Some(metadata)));
         }
         SampleTable::load(&path).map(|table| (table, None))
     };
-    let (table, metadata) = py.detach(load).python()?;
-    Ok((table_to_numpy(py, table)?, json::to_python(py, &metadata)?))
+    let (table, metadata) = left_alone(py, None, load)?.python()?;
+    Ok((table_to_read(py, table)?, json::to_python(py, &metadata)?))
 }
 
 /// Refuses what is no table.

@@ -1,5 +1,6 @@
 //! Work without the interpreter's lock, under the eyes of who may interrupt it.
 
+use std::io;
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -7,6 +8,7 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::marker::Ungil;
 use pyo3::prelude::*;
 
@@ -27,6 +29,41 @@ pub fn detached<T: Ungil + Send>(
 ) -> PyResult<T> {
     let pool = Pool::of(threads)?;
     Ok(py.detach(|| pool.install(work)))
+}
+
+/// The same for work that Ctrl-C leaves alone: it cannot be stopped, and goes on until it has ended or the
+/// process does, on a thread and a pool of its own. It must not write what would surprise its caller then.
+///
+/// # Errors
+/// A number of threads out of range; what a signal's handler raises, `KeyboardInterrupt` for Ctrl-C.
+pub fn left_alone<T: Send + 'static>(
+    py: Python<'_>,
+    threads: Option<usize>,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> PyResult<T> {
+    let pool = Pool::of(threads)?;
+    let (tell, told) = channel();
+    let work = move || {
+        let result = pool.install(work);
+        drop(pool);
+        // Nobody listens any more after a signal.
+        let _ = tell.send(result);
+    };
+    let worker = thread::Builder::new().name("fsot".into()).spawn(work).map_err(no_thread)?;
+    let told = Mutex::new(told);
+    loop {
+        match next(py, &told) {
+            Ok(result) => return Ok(result),
+            Err(RecvTimeoutError::Timeout) => py.check_signals()?,
+            Err(RecvTimeoutError::Disconnected) => break,
+        }
+    }
+    let ended = py.detach(|| worker.join());
+    resume_unwind(ended.expect_err("work that ends tells its result"))
+}
+
+fn no_thread(error: io::Error) -> PyErr {
+    PyRuntimeError::new_err(format!("the system gives no thread: {error}; end some other work first"))
 }
 
 /// What the worker asks of the thread that called.

@@ -1,7 +1,7 @@
 //! What a table is worth: figures, pages and pictures, by the code of the command.
 
-use std::io::Write;
-use std::path::PathBuf;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
 
 use fsot::SampleTable;
 use fsot::files::WholeFile;
@@ -14,7 +14,7 @@ use pyo3::types::PyBytes;
 
 use crate::arrays::{table_of, to_numpy};
 use crate::counts::{Count, Number};
-use crate::errors::{OrPython, failed, refused};
+use crate::errors::{OrPython, failed, of_system, refused};
 use crate::json;
 use crate::kernel::PyKernel;
 use crate::metrics::measured;
@@ -42,7 +42,7 @@ pub fn inspect_table<'py>(
     let table = table_of(array)?;
     let metadata = metadata.map(|given| metadata_of(given, &table)).transpose()?;
     let yardstick = yardstick(kernel, seed);
-    let measure = || figures_of(name, table, metadata, &yardstick, integrands.0, slices.0);
+    let measure = move || figures_of(name, table, metadata, &yardstick, integrands.0, slices.0);
     json::to_python(py, &measured(py, threads, measure)?.map_err(|failure| failed(&*failure))?)
 }
 
@@ -74,7 +74,7 @@ pub fn report_tables<'py>(
     let yardstick = yardstick(kernel, seed);
     let integrands = integrands.map(|Count(count)| count);
     let made_by = "fsot.Table.report()";
-    let measure = || pages(shown, made_by, &yardstick, integrands, slices.0);
+    let measure = move || pages(shown, made_by, &yardstick, integrands, slices.0);
     let made = measured(py, threads, measure)?.map_err(|failure| failed(&*failure))?;
     let Pages { html: page, png: sheet } = made;
     let files = [(&html, page.into_bytes()), (&png, sheet)];
@@ -90,12 +90,8 @@ pub fn report_tables<'py>(
     Ok(())
 }
 
-fn cannot_write(path: &std::path::Path, error: &std::io::Error) -> PyErr {
-    let sentence = format!("cannot write {}: {error}; choose another path", path.display());
-    match error.raw_os_error() {
-        Some(number) => pyo3::exceptions::PyOSError::new_err((number, sentence)),
-        None => pyo3::exceptions::PyOSError::new_err(sentence),
-    }
+fn cannot_write(path: &Path, error: &io::Error) -> PyErr {
+    of_system(error, format!("cannot write {}: {error}; choose another path", path.display()))
 }
 
 /// A sheet of pictures; each of them, and what it shows.
@@ -104,8 +100,9 @@ type Pictures<'py> = (Bound<'py, PyBytes>, Vec<(String, Bound<'py, PyBytes>)>);
 /// What a notebook shows: a sheet of pictures as PNG; each of them, and what it shows.
 #[pyfunction]
 pub fn glance_at_table<'py>(py: Python<'py>, array: PyReadonlyArray5<'py, f32>) -> PyResult<Pictures<'py>> {
-    let view = array.as_array();
-    let glance = measured(py, None, || Glance::new(view))?.map_err(|failure| failed(&*failure))?;
+    let values = array.as_array().to_owned();
+    let glance =
+        measured(py, None, move || Glance::new(values.view()))?.map_err(|failure| failed(&*failure))?;
     let sheet = PyBytes::new(py, &glance.sheet.to_png()?);
     let pictures =
         glance.pictures.into_iter().map(|(what, picture)| Ok((what, PyBytes::new(py, &picture.to_png()?))));
@@ -130,5 +127,5 @@ pub fn mapped_table<'py>(
         }
     };
     let dims = dims.map(|Count(dim)| dim);
-    Ok(to_numpy(py, py.detach(|| table.mapped(mapping, dims)).python()?))
+    Ok(to_numpy(py, measured(py, None, move || table.mapped(mapping, dims))?.python()?))
 }

@@ -209,7 +209,7 @@ class TestSettings:
             (lambda c: c.with_domain(["torus"]), ValueError, "1 domains for 2 dimensions"),
             (lambda c: c.with_domain([1, 2]), TypeError, "str"),
             (lambda c: c.with_slicing(directions=17), ValueError, "give a value from 1 to 16"),
-            (lambda c: c.with_slicing(directions="many"), TypeError, "integer"),
+            (lambda c: c.with_slicing(directions="many"), TypeError, "whole number"),
             (lambda c: c.with_slicing(axis_share=1.5), ValueError, r"in \[0, 1\]"),
             (lambda c: c.with_slicing(batch_slices=0), ValueError, "at least 1 slice"),
             (lambda c: c.with_slicing(rate=1), TypeError, "rate"),

@@ -318,3 +318,20 @@ def test_a_study_needs_no_picture(toml, capsys, monkeypatch):
     assert study.main([*arguments, "--serial"]) == 0
     assert "no picture: pictures need matplotlib" in capsys.readouterr().err
     assert study.main([*arguments, "--plot-only"]) == 1
+
+
+@pytest.mark.parametrize(
+    "line, words",
+    [
+        ("seconds = [nan]", "grid.seconds is nan: give a finite number"),
+        ("kernel = [2.1, inf]", "grid.kernel is inf: give a finite number"),
+        ("kernel = [{ sigma = nan }]", "grid.kernel.sigma is nan: give a finite number"),
+        ("spp = 1979-05-27", "grid.spp is a date or a time, 1979-05-27: write"),
+        ("seed = [07:32:00]", "grid.seed is a date or a time, 07:32:00: write"),
+    ],
+)
+def test_values_of_no_table_are_refused_by_their_key(line, words, toml, capsys):
+    toml.write_text(f"[[grid]]\nwidth = 8\n{line}\n")
+    assert run(toml) == 1
+    said = capsys.readouterr().err
+    assert said.startswith("study: ") and words in said and said.count("\n") == 1

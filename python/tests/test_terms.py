@@ -336,7 +336,7 @@ class TestTerms:
             (lambda: one(WHOLE, weight=numpy.nan), ValueError, "the weight of a term is NaN"),
             (lambda: one(WHOLE, role="rest"), ValueError, "'rest' is no role: write descend or balance"),
             (lambda: one(WHOLE, fsot.Target.quantiles([0, 1])), ValueError, "name as many dimensions"),
-            (lambda: one(WHOLE, dims="01"), TypeError, "interpreted as an integer"),
+            (lambda: one(WHOLE, dims="01"), TypeError, "is no whole number"),
             (lambda: one("whole_table"), TypeError, "Classes"),
             (lambda: one(WHOLE, "uniform"), TypeError, "Target"),
             # Notes name the argument, from Python 3.11 on.

@@ -126,7 +126,7 @@ class TestArguments:
             ({"slices": fsot.Objective(fsot.Config(4, 4, dims=3)).draw()}, ValueError, "of another"),
             ({"slices": SLICES, "seed": 0}, ValueError, "leave out seed and step"),
             ({"seed": -1}, ValueError, "give a whole number from 0"),
-            ({"step": 0.5}, TypeError, "integer"),
+            ({"step": 0.5}, TypeError, "whole number|integer"),
             ({"objective": TORUS, "slices": "all"}, ValueError, "use slices"),
         ],
     )

@@ -94,7 +94,7 @@ pub enum TableError {
 #[non_exhaustive]
 pub enum FormatError {
     /// A directory, a device or a pipe.
-    #[error("not an ordinary file: give the path of a .npy file and of the .json beside it")]
+    #[error("not an ordinary file: give the path of a file")]
     NotAFile,
     /// Another kind of file.
     #[error("starts with \"{}\" instead of \"\\x93NUMPY\": {advice}", start.escape_ascii())]

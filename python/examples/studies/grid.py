@@ -7,6 +7,7 @@ import difflib
 import hashlib
 import itertools
 import json
+import math
 import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -92,6 +93,8 @@ def read(path: Path) -> Study:
         if not isinstance(data.get(section, kind()), kind):
             wanted = "[[grid]]" if kind is list else f"[{section}]"
             raise StudyError(f"{section} is no section: write {wanted}")
+    for section in ("grid", "kernels", "measure"):
+        _plain(data.get(section), section)
     if not data.get("grid"):
         raise StudyError(f"{path} makes no tables: write a [[grid]]")
     _known(data.get("local", {}), ["workers"], "[local]")
@@ -205,6 +208,20 @@ def _kernel(table: dict[str, Any], config: fsot.Config) -> fsot.Kernel:
 def hashed(data: Any) -> str:
     """SHA-256 of plain data, however its keys are ordered."""
     return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()
+
+
+def _plain(value: Any, where: str) -> None:
+    """Refuses what TOML knows and no table is made of: dates, and numbers that are none."""
+    if isinstance(value, dict):
+        for key, part in value.items():
+            _plain(part, f"{where}.{key}")
+    elif isinstance(value, list):
+        for part in value:
+            _plain(part, where)
+    elif isinstance(value, float) and not math.isfinite(value):
+        raise StudyError(f"{where} is {value}: give a finite number")
+    elif not isinstance(value, (bool, int, float, str, type(None))):
+        raise StudyError(f"{where} is a date or a time, {value}: write a number or a text in quotes")
 
 
 def _list(axis: str, value: Any) -> list[Any]:

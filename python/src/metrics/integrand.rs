@@ -9,6 +9,7 @@ use numpy::PyArray1;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
+use super::measured;
 use crate::arrays::{Numbers, to_numpy};
 use crate::counts::{Count, Number};
 use crate::errors::{OrPython, refused};
@@ -287,7 +288,7 @@ fn halton(py: Python<'_>, dims: usize, count: usize) -> PyResult<Array2<f64>> {
         keep.lock().unwrap_or_else(PoisonError::into_inner).extend_from_slice(point);
         point[0]
     };
-    let estimate = py.detach(|| Integrand::estimated(dims, record, count));
+    let estimate = measured(py, None, move || Integrand::estimated(dims, record, count))?;
     // One point has no variance: the caller's function is going to say so.
     if count != 1 {
         estimate.python()?;

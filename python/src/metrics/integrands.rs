@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use fsot::metrics::Integrands;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -46,9 +47,22 @@ const DRAWN: usize = 4;
 #[pymethods]
 impl PyIntegrands {
     #[new]
-    fn new(families: &Bound<'_, PyDict>) -> PyResult<Self> {
+    fn new(families: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let wanted = |what: &str| {
+            PyTypeError::new_err(format!(
+                "{what}: give a dictionary of lists of Integrand by the names of their families, as in \
+                 {{\"own\": [Integrand(function, 2)]}}"
+            ))
+        };
+        let Ok(families) = families.cast::<PyDict>() else {
+            return Err(wanted(&format!("families is of type {}", families.get_type().name()?)));
+        };
         let families = families.iter().map(|(name, integrands)| {
-            Ok((name.extract::<String>()?, integrands.extract::<Vec<PyIntegrand>>()?))
+            let name: String = name.extract().map_err(|_| wanted("a name of a family is no text"))?;
+            match integrands.extract::<Vec<PyIntegrand>>() {
+                Ok(integrands) => Ok((name, integrands)),
+                Err(_) => Err(wanted(&format!("the family '{name}' is no list of Integrand"))),
+            }
         });
         let families = families.collect::<PyResult<Vec<_>>>()?;
         let Some(dims) = families.iter().flat_map(|(_, list)| list).map(PyIntegrand::dims).next() else {

@@ -11,7 +11,7 @@ use fsot::metrics::{
 };
 use fsot::targets::{Density, Target};
 use fsot::{Config, Kernel, Objective};
-use ndarray::ArrayView3;
+use ndarray::Array3;
 use numpy::{PyArray1, PyArray2, PyArray3};
 use pyo3::prelude::*;
 
@@ -91,7 +91,7 @@ pub fn measure_filtered_error(
     let question = Question::new(samples, dims)?;
     let integrands = question.integrands(py, integrands.as_ref())?;
     let (kernel, Question { given, group }) = (question.kernel(kernel), question);
-    let measure = || match frames {
+    let measure = move || match frames {
         Some(Count(frames)) => {
             FilteredError::measure_frames(given.samples()?, &group, &integrands, &kernel, frames)
         }
@@ -113,7 +113,8 @@ pub fn measure_bias(
     let question = Question::new(samples, dims)?;
     let integrands = question.integrands(py, integrands.as_ref())?;
     let Question { given, group } = question;
-    let bias = measured(py, threads, || Bias::measure(given.samples()?, &group, &integrands))?.python()?;
+    let bias =
+        measured(py, threads, move || Bias::measure(given.samples()?, &group, &integrands))?.python()?;
     Ok([&bias.table, &bias.frame, &bias.pixel].map(of_families))
 }
 
@@ -129,7 +130,7 @@ pub fn measure_set_error(
     let question = Question::new(samples, dims)?;
     let integrands = question.integrands(py, integrands.as_ref())?;
     let Question { given, group } = question;
-    let error = measured(py, threads, || SetError::measure(given.samples()?, &group, &integrands))?;
+    let error = measured(py, threads, move || SetError::measure(given.samples()?, &group, &integrands))?;
     Ok(of_families(&error.python()?.ratios))
 }
 
@@ -171,7 +172,7 @@ pub fn measure_bound(
             Err(Config::new(given.extent(), given.dims).with_groups(&groups).with_kernel(kernel))
         }
     };
-    let measure = || -> Result<OfObjective, MeasureError> {
+    let measure = move || -> Result<OfObjective, MeasureError> {
         let samples = given.samples()?;
         let objective = match planned {
             Ok(objective) => objective,
@@ -212,7 +213,7 @@ pub fn measure_spectra<'py>(
     let question = Question::new(samples, dims)?;
     let integrands = question.integrands(py, integrands.as_ref())?;
     let Question { given, group } = question;
-    let spectra = measured(py, threads, || Spectra::measure(given.samples()?, &group, &integrands))?;
+    let spectra = measured(py, threads, move || Spectra::measure(given.samples()?, &group, &integrands))?;
     Ok(spectra_arrays(py, spectra.python()?))
 }
 
@@ -243,8 +244,9 @@ pub fn spectra_of_image<'py>(
     if !(variance > 0.0 && variance.is_finite()) {
         return Err(refused(format!("the variance is {variance}: give a value above 0 that is finite")));
     }
-    let image = ArrayView3::from_shape(shape, &values).expect("as it came");
-    Ok(spectra_arrays(py, py.detach(|| Spectra::of_image(image, variance))))
+    let image = Array3::from_shape_vec(shape, values).expect("as it came");
+    let measure = move || Spectra::of_image(image.view(), variance);
+    Ok(spectra_arrays(py, measured(py, None, measure)?))
 }
 
 #[pyfunction]
@@ -259,7 +261,7 @@ pub fn measure_error_image<'py>(
     let Question { given, group } = Question::new(samples, dims)?;
     let list = || places(&given, &group, integrand.dims());
     let integrand = integrand.at(py, &mut Places::new(&list))?;
-    let image = measured(py, threads, || ErrorImage::measure(given.samples()?, &group, &integrand))?;
+    let image = measured(py, threads, move || ErrorImage::measure(given.samples()?, &group, &integrand))?;
     let ErrorImage { errors, white_variance, .. } = image.python()?;
     Ok((to_numpy(py, errors), white_variance))
 }
@@ -275,7 +277,8 @@ pub fn measure_marginal<'py>(
     threads: Option<Count>,
 ) -> PyResult<(Bound<'py, PyArray1<u64>>, Vec<(f64, f64, f64)>, u64)> {
     let given = Given::of(samples)?;
-    let marginal = measured(py, threads, || Marginal::measure(given.samples()?, dim.0, bins.0))?.python()?;
+    let marginal =
+        measured(py, threads, move || Marginal::measure(given.samples()?, dim.0, bins.0))?.python()?;
     let faces = marginal.faces.iter().map(|face| (face.within, face.density, face.standard_error));
     Ok((PyArray1::from_vec(py, marginal.counts.clone()), faces.collect(), marginal.zeros))
 }
@@ -291,7 +294,7 @@ pub fn measure_histogram<'py>(
 ) -> PyResult<(Bound<'py, PyArray1<u64>>, f64)> {
     let given = Given::of(samples)?;
     let dims = dims.map(|Count(dim)| dim);
-    let measure = || Histogram::measure(given.samples()?, dims, cells_per_side.0);
+    let measure = move || Histogram::measure(given.samples()?, dims, cells_per_side.0);
     let histogram = measured(py, threads, measure)?.python()?;
     let spread = histogram.spread();
     Ok((PyArray1::from_vec(py, histogram.counts), spread))
@@ -306,7 +309,7 @@ pub fn measure_discrepancy(
     threads: Option<Count>,
 ) -> PyResult<(f64, f64)> {
     let Question { given, group } = Question::new(samples, dims)?;
-    let found = measured(py, threads, || Discrepancy::measure(given.samples()?, &group))?.python()?;
+    let found = measured(py, threads, move || Discrepancy::measure(given.samples()?, &group))?.python()?;
     Ok((found.squared, found.ratio_to_white_noise))
 }
 
@@ -344,7 +347,7 @@ pub fn measure_sliced_distance(
 ) -> PyResult<f64> {
     let Question { given, group } = Question::new(samples, dims)?;
     let target = target_of(target)?;
-    let measure = || SlicedDistance::measure(given.samples()?, &group, &target, directions.0);
+    let measure = move || SlicedDistance::measure(given.samples()?, &group, &target, directions.0);
     Ok(measured(py, threads, measure)?.python()?.w2)
 }
 
@@ -364,7 +367,7 @@ pub fn measure_density_match(
     let given = Given::of(samples)?;
     let density = density_of(density)?;
     let dims = dims.map(|Count(dim)| dim);
-    let measure = || DensityMatch::measure(given.samples()?, dims, &density, sigma);
+    let measure = move || DensityMatch::measure(given.samples()?, dims, &density, sigma);
     let DensityMatch { correlation, strays, worst, .. } = measured(py, threads, measure)?.python()?;
     let block = (worst.deviation, worst.column, worst.row, worst.side, worst.points, worst.expected);
     Ok(((correlation, strays), block))

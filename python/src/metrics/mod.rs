@@ -5,20 +5,19 @@ pub mod integrand;
 pub mod integrands;
 pub mod measure;
 
-use pyo3::marker::Ungil;
 use pyo3::prelude::*;
 
 use crate::counts::Count;
-use crate::work::detached;
+use crate::work::left_alone;
 
-/// Measures on so many threads, without the interpreter's lock.
+/// Measures on so many threads, without the interpreter's lock, unless Ctrl-C comes.
 ///
 /// # Errors
-/// A number of threads out of range.
-pub fn measured<T: Ungil + Send>(
+/// A number of threads out of range; what a signal's handler raises.
+pub fn measured<T: Send + 'static>(
     py: Python<'_>,
     threads: Option<Count>,
-    work: impl FnOnce() -> T + Ungil + Send,
+    work: impl FnOnce() -> T + Send + 'static,
 ) -> PyResult<T> {
-    detached(py, threads.map(|Count(threads)| threads), work)
+    left_alone(py, threads.map(|Count(threads)| threads), work)
 }
