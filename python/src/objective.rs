@@ -16,7 +16,6 @@ use crate::counts::{Count, Number};
 use crate::demand::PyDemand;
 use crate::errors::{OrPython, refused};
 use crate::kernel::rows;
-use crate::own::raised;
 use crate::slices::{Groups, PySlices};
 use crate::term::{PyTerm, role_of};
 use crate::work::{Caller, detached, watched};
@@ -78,7 +77,7 @@ impl PyObjective {
             }
         };
         let (objective, exception) = watched(py, threads, plan, |_| Ok(()))?;
-        if let Some(exception) = exception.or_else(|| raised(&config.0)) {
+        if let Some(exception) = exception {
             return Err(exception);
         }
         let objective = objective.python()?;
@@ -271,7 +270,7 @@ impl PyObjective {
             })
         };
         let (found, exception) = watched(py, self.threads, work, |_| Ok(()))?;
-        if let Some(exception) = exception.or_else(|| raised(&self.config.0)) {
+        if let Some(exception) = exception {
             return Err(exception);
         }
         let ValueAndGradient { value, gradient } = found.python()?;

@@ -16,7 +16,6 @@ use crate::counts::Count;
 use crate::demand::PyDemand;
 use crate::errors::OrPython;
 use crate::json;
-use crate::own::raised;
 use crate::step::{Facts, PyStep, answer};
 use crate::until::Until;
 use crate::work::{Caller, Event, detached, watched};
@@ -121,7 +120,7 @@ impl PyOptimizer {
             }
         };
         let (optimizer, exception) = watched(py, threads, plan, |_| Ok(()))?;
-        if let Some(exception) = exception.or_else(|| raised(&config.0)) {
+        if let Some(exception) = exception {
             return Err(exception);
         }
         Ok(Self { state: Mutex::new(State::new(optimizer.python()?)), threads })
