@@ -6,8 +6,9 @@ use std::sync::{Mutex, MutexGuard, TryLockError};
 use fsot::files::{Metadata, RunRecord};
 use fsot::optimizer::{Checkpoint, StepReport};
 use fsot::{Optimizer, RunReport, SampleTable};
-use pyo3::exceptions::PyRuntimeError;
+use pyo3::exceptions::{PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
+use pyo3::types::PyBool;
 
 use crate::arrays::{table_of, table_to_numpy};
 use crate::checkpoint::PyCheckpoint;
@@ -21,8 +22,8 @@ use crate::until::Until;
 use crate::work::{Caller, Event, detached, watched};
 
 /// What a run did.
-#[pyclass(frozen, get_all, name = "Report", module = "fsot")]
-#[derive(Clone, Debug)]
+#[pyclass(frozen, eq, get_all, name = "Report", module = "fsot")]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PyReport {
     /// `"finished"`, `"converged"`, or `"stopped"` by a callback, an exception or Ctrl-C.
     ended: String,
@@ -42,7 +43,20 @@ impl PyReport {
         let Self { ended, steps, work, elapsed, .. } = self;
         format!("<{ended} after {steps} steps, {elapsed:.2} s: {}>", work.repr())
     }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, ReportParts)> {
+        let Self { ended, steps, slices, work, elapsed } = self.clone();
+        Ok((py.get_type::<Self>().getattr("_of_parts")?, (ended, steps, slices, work, elapsed)))
+    }
+
+    /// What `__reduce__` has written.
+    #[staticmethod]
+    fn _of_parts(ended: String, steps: u64, slices: u64, work: Until, elapsed: f64) -> Self {
+        Self { ended, steps, slices, work, elapsed }
+    }
 }
+
+type ReportParts = (String, u64, u64, Until, f64);
 
 #[derive(Debug)]
 struct State {
@@ -254,6 +268,13 @@ impl PyOptimizer {
         Ok(())
     }
 
+    fn __reduce__(&self) -> PyResult<()> {
+        Err(PyTypeError::new_err(
+            "an optimiser is neither pickled nor copied: pickle optimizer.checkpoint() instead, and resume it \
+             in another optimiser of its configuration",
+        ))
+    }
+
     /// What the last run did, as in metadata.
     fn _record<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         json::to_python(py, &self.state()?.report.as_ref().map(RunRecord::from))
@@ -309,11 +330,24 @@ impl PyReport {
 fn call_back(py: Python<'_>, callback: &Option<Py<PyAny>>, step: PyStep) -> PyResult<()> {
     let Some(callback) = callback else { return Ok(()) };
     let step = Bound::new(py, step)?;
-    let answer = callback.call1(py, (&step,));
-    let ends = matches!(&answer, Ok(answer) if matches!(answer.extract::<bool>(py), Ok(false)));
-    let flow = if ends || answer.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+    let goes_on = callback.bind(py).call1((&step,)).and_then(|answer| goes_on(&answer));
+    let flow = if let Ok(true) = goes_on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
     step.get().release(flow);
-    answer.map(drop)
+    goes_on.map(drop)
+}
+
+/// Whether an answer is anything but `False`, be it Python's, or numpy's or another library's, also in an
+/// array without axes.
+///
+/// # Errors
+/// Those of its `__bool__`, as of arrays of several.
+fn goes_on(answer: &Bound<'_, PyAny>) -> PyResult<bool> {
+    if answer.is_instance_of::<PyBool>() {
+        return answer.is_truthy();
+    }
+    let Some(dtype) = answer.getattr_opt("dtype")? else { return Ok(true) };
+    let is_bool = matches!(dtype.str()?.to_str()?, "bool" | "torch.bool");
+    if is_bool { answer.is_truthy() } else { Ok(true) }
 }
 
 fn tell(py: Python<'_>, progress: &Option<Py<PyAny>>, facts: Facts) -> PyResult<()> {

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import copy
 import os
 import pathlib
+import pickle
 import signal
 import subprocess
 import sys
@@ -250,3 +252,98 @@ def of_a_fresh_checkpoint():
 @pytest.mark.parametrize("make", [finished, of_a_fresh_checkpoint, lambda: fsot.Optimizer(STILL)])
 def test_metadata_make_the_table_again(make, tmp_path):
     assert again(make(), tmp_path) is True
+
+
+def forked(ask):
+    """The exception of a child that is forked in a callback, by name, or how it ended."""
+    found = []
+
+    def fork(step):
+        if step.step == 1:
+            reader, writer = os.pipe()
+            child = os.fork()
+            if child == 0:
+                signal.alarm(20)
+                try:
+                    ask(step)
+                    told = b"nothing"
+                except BaseException as error:
+                    told = f"{type(error).__name__}: {error}".encode()
+                os.write(writer, told)
+                os._exit(0)
+            os.close(writer)
+            found.append(os.read(reader, 1000).decode())
+            os.close(reader)
+            os.waitpid(child, 0)
+
+    optimizer = fsot.Optimizer(STILL)
+    assert optimizer.run(fsot.Until.sweeps(1), fork, progress=False).ended == "finished"
+    return found[0]
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="the system does not fork")
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+@pytest.mark.filterwarnings("ignore:os.fork:RuntimeWarning")
+@pytest.mark.parametrize("ask", [lambda step: step.points, lambda step: step.loss, lambda step: step.checkpoint()])
+def test_a_child_that_a_callback_forks_does_not_wait_for_its_parents_threads(ask):
+    assert forked(ask).startswith("RuntimeError: the run is another process's")
+
+
+def test_reports_and_figures_of_steps_are_copied_and_pickled():
+    steps = []
+    report = fsot.Optimizer(STILL).run(WORK, steps.append, progress=False)
+    for same in (copy.copy, copy.deepcopy, lambda of: pickle.loads(pickle.dumps(of))):
+        again = same(report)
+        assert again == report and repr(again) == repr(report) and again.work == report.work
+        step = same(steps[3])
+        for figure in ("step", "steps", "slices", "displacement", "rate", "elapsed"):
+            assert getattr(step, figure) == getattr(steps[3], figure)
+        with pytest.raises(RuntimeError, match="ask a step while the callback sees it"):
+            step.points  # noqa: B018
+    assert report != fsot.Optimizer(STILL).run(fsot.Until.sweeps(1), progress=False)
+
+
+@pytest.mark.parametrize("same", [copy.copy, copy.deepcopy, pickle.dumps])
+def test_an_optimizer_says_what_to_pickle(same):
+    with pytest.raises(TypeError, match=r"pickle optimizer\.checkpoint\(\) instead"):
+        same(fsot.Optimizer(STILL))
+
+
+def test_checkpoints_are_the_same_by_what_they_hold():
+    optimizer = fsot.Optimizer(STILL)
+    before = optimizer.checkpoint()
+    assert before == optimizer.checkpoint() == pickle.loads(pickle.dumps(before)) == copy.copy(before)
+    assert repr(before) == "<Checkpoint between runs>"
+    end_by_false(optimizer, 9)
+    checkpoint = optimizer.checkpoint()
+    assert checkpoint != before and checkpoint == pickle.loads(pickle.dumps(checkpoint)) and checkpoint != 3
+    assert repr(checkpoint).startswith("<Checkpoint at step 9 of Until.work(")
+
+
+class Answer:
+    dtype = numpy.dtype(bool)
+
+    def __bool__(self):
+        raise LookupError("no answer")
+
+
+@pytest.mark.parametrize(
+    ("answer", "error"),
+    [(Answer(), LookupError), (numpy.array([False, False]), ValueError)],
+)
+def test_an_exception_of_an_answer_is_raised(answer, error):
+    optimizer = fsot.Optimizer(STILL)
+    with pytest.raises(error):
+        optimizer.run(WORK, lambda step: answer, progress=False)
+    assert optimizer.table().metadata["run"]["steps"] == 1
+    assert optimizer.finish(progress=False).ended == "finished"
+
+
+@pytest.mark.parametrize("answer", [numpy.array(False), numpy.array([False]), numpy.bool_(False)])
+def test_false_of_numpy_ends_a_run(answer):
+    assert fsot.Optimizer(STILL).run(WORK, lambda step: answer, progress=False).steps == 1
+
+
+@pytest.mark.parametrize("answer", [numpy.array(True), numpy.array(0), numpy.float64(0), [], object()])
+def test_no_other_answer_ends_a_run(answer):
+    assert fsot.Optimizer(STILL).run(WORK, lambda step: answer, progress=False).ended == "finished"

@@ -121,8 +121,8 @@ impl Optimizer {
         Ok(())
     }
 
-    /// Whether there is a run to go on with: one that was [resumed](Self::resume) and that nothing has replaced
-    /// or ended since. [`finish`](Optimizer::finish) ends it.
+    /// Whether there is a run to go on with: one that was [resumed](Self::resume) and that nothing has
+    /// replaced or ended since. [`finish`](Optimizer::finish) ends it.
     pub fn is_in_a_run(&self) -> bool {
         self.resumed.is_some()
     }
