@@ -8,7 +8,8 @@ use crate::config::PyConfig;
 use crate::errors::OrPython;
 use crate::until::Until;
 
-/// All that the rest of a run depends on, or all that further steps do. Who resumes it ends with the same bits.
+/// All that the rest of a run depends on, or all that further steps do. Who resumes it ends with the same
+/// bits.
 ///
 /// `Step.checkpoint` takes one in the middle of a run, and `Optimizer.checkpoint` between steps, or of a run
 /// that has ended early, where it broke off.

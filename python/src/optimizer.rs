@@ -194,7 +194,8 @@ impl PyOptimizer {
         let State { optimizer, report: last, pending } = &mut *self.state()?;
         if until.is_none() && pending.is_none() && !optimizer.is_in_a_run() {
             return Err(PyRuntimeError::new_err(
-                "there is no run to finish: begin one with run(), or resume() a checkpoint that was taken in one",
+                "there is no run to finish: begin one with run(), or resume() a checkpoint that was \
+                 taken in one",
             ));
         }
         let (calls_back, tells) = (callback.is_some(), progress.is_some());
@@ -270,8 +271,8 @@ impl PyOptimizer {
 
     fn __reduce__(&self) -> PyResult<()> {
         Err(PyTypeError::new_err(
-            "an optimiser is neither pickled nor copied: pickle optimizer.checkpoint() instead, and resume it \
-             in another optimiser of its configuration",
+            "an optimiser is neither pickled nor copied: pickle optimizer.checkpoint() instead, and resume \
+             it in another optimiser of its configuration",
         ))
     }
 

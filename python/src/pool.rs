@@ -16,8 +16,8 @@ use crate::errors::refused;
 /// Most threads of a pool.
 const MOST: usize = 1024;
 
-/// Most pools at the same time. A function that a run calls, and that starts such a run, would go on until the
-/// system has no more threads.
+/// Most pools at the same time. A function that a run calls, and that starts such a run, would go on until
+/// the system has no more threads.
 const MOST_POOLS: usize = 128;
 
 /// The pools of a process.

@@ -42,8 +42,8 @@ pub enum Ask {
 
 /// A step of a run, as a callback sees it.
 ///
-/// Figures may be kept, copied and pickled. Points, loss and checkpoint are computed when they are asked for, which is possible
-/// until the callback returns.
+/// Figures may be kept, copied and pickled. Points, loss and checkpoint are computed when they are asked for,
+/// which is possible until the callback returns.
 #[pyclass(frozen, name = "Step", module = "fsot")]
 #[derive(Debug)]
 pub struct PyStep {
