@@ -65,7 +65,8 @@ class Optimizer(_fsot.Optimizer):
         -------
         Report
             What was done. After Ctrl-C it says ``"stopped"``, and a warning (`Interrupted`) says so too.
-            Whatever ended the run, `points` are what it had reached.
+            Whatever ended the run, `points` are what it had reached, `finish` goes on with it, and
+            `checkpoint` takes it along.
         """
         return self._follow(until or _fsot.Until.usual(), callback, progress)
 
@@ -75,11 +76,23 @@ class Optimizer(_fsot.Optimizer):
         *,
         progress: bool = True,
     ) -> _fsot.Report:
-        """Goes on with the run that was resumed, to its end; parameters as of `run`."""
+        """Goes on with the run that has ended early or was resumed, to its end: the same bits as of one that
+        was left alone. Parameters and result are those of `run`, and count from where that run began.
+
+        Raises
+        ------
+        RuntimeError
+            There is no such run: none was begun, it has come to its end, or something else has moved the
+            points since.
+        """
         return self._follow(None, callback, progress)
 
     def table(self) -> Table:
-        """The table as it is now, with the metadata of the last run."""
+        """The table as it is now, with the metadata of the last run, if there was one.
+
+        They say whether a run of the same configuration and work makes it again: ``run.start`` is
+        ``"elsewhere"`` if anything else has moved the points.
+        """
         return made(*self._table())
 
     def _follow(

@@ -22,6 +22,11 @@ try:
 except ImportError as error:  # pragma: no cover
     raise ImportError("fsot.torch needs PyTorch: pip install torch") from error
 
+BACKWARDS = (
+    "the filtered sliced loss can be differentiated once and backwards alone, not in forward mode: use "
+    "backward(), torch.func.grad or torch.func.jacrev, and finite differences of the gradient for a Hessian"
+)
+
 __all__ = ["Slices", "filtered_sliced_loss"]
 
 
@@ -66,7 +71,7 @@ def filtered_sliced_loss(
     ValueError
         Points outside [0, 1), or of another shape; slices of another objective; "all" without a closed form.
     RuntimeError
-        From a second derivative.
+        From a second derivative, and from forward-mode ones, as `torch.func.jacfwd` and `hessian` take.
     """
     check(objective, slices, seed, step)
     if not isinstance(points, torch.Tensor):
@@ -104,6 +109,8 @@ class _Loss(torch.autograd.Function):
     def vmap(info: Any, in_dims: tuple[int | None, ...], points: torch.Tensor, *rest: Any) -> Any:
         """One after the other."""
         assert in_dims[0] is not None
+        if points.shape[in_dims[0]] == 0:
+            return (points.new_zeros(0), torch.zeros_like(points.movedim(in_dims[0], 0))), (0, 0)
         found = [_Loss.apply(one, *rest) for one in points.unbind(in_dims[0])]
         losses, slopes = zip(*found, strict=True)
         return (torch.stack(losses), torch.stack(slopes)), (0, 0)
@@ -113,11 +120,13 @@ class _Loss(torch.autograd.Function):
         points, slopes = ctx.saved_tensors
         return _Slope.apply(points, slopes, of_loss), None, None, None, None
 
+    @staticmethod
+    def jvp(ctx: Any, *_: Any) -> Any:
+        raise RuntimeError(BACKWARDS)
+
 
 class _Slope(torch.autograd.Function):
     """The gradient, of which there is no further one."""
-
-    generate_vmap_rule = True
 
     @staticmethod
     def forward(
@@ -130,5 +139,17 @@ class _Slope(torch.autograd.Function):
         pass
 
     @staticmethod
+    def vmap(info: Any, in_dims: tuple[int | None, ...], *of: torch.Tensor) -> Any:
+        """All at once. The rule that torch generates takes no batch of 0."""
+        points, slopes, of_loss = (
+            one.unsqueeze(0) if dim is None else one.movedim(dim, 0) for one, dim in zip(of, in_dims, strict=True)
+        )
+        return _Slope.apply(points, slopes, of_loss.reshape(-1, *(slopes.dim() - 1) * [1])), 0
+
+    @staticmethod
     def backward(ctx: Any, _: torch.Tensor) -> tuple[Any, ...]:
+        raise RuntimeError(ONCE.format("torch"))
+
+    @staticmethod
+    def jvp(ctx: Any, *_: Any) -> Any:
         raise RuntimeError(ONCE.format("torch"))

@@ -6,8 +6,13 @@ use pyo3::types::PyBytes;
 
 use crate::config::PyConfig;
 use crate::errors::OrPython;
+use crate::until::Until;
 
-/// All that the rest of a run depends on. Who resumes it ends with the same bits.
+/// All that the rest of a run depends on, or all that further steps do. Who resumes it ends with the same
+/// bits.
+///
+/// `Step.checkpoint` takes one in the middle of a run, and `Optimizer.checkpoint` between steps, or of a run
+/// that has ended early, where it broke off.
 #[pyclass(frozen, name = "Checkpoint", module = "fsot")]
 #[derive(Clone, Debug)]
 pub struct PyCheckpoint(pub Checkpoint);
@@ -42,6 +47,24 @@ impl PyCheckpoint {
     #[staticmethod]
     fn from_bytes(bytes: &[u8]) -> PyResult<Self> {
         Checkpoint::read(&mut &*bytes).python().map(Self)
+    }
+
+    /// Whether their files are the same.
+    fn __eq__(&self, other: &Self) -> PyResult<bool> {
+        let bytes = |checkpoint: &Checkpoint| {
+            let mut bytes = Vec::new();
+            checkpoint.write(&mut bytes).map(|()| bytes)
+        };
+        Ok(bytes(&self.0)? == bytes(&other.0)?)
+    }
+
+    fn __repr__(&self) -> String {
+        match self.0.progress() {
+            Some((work, step)) => {
+                format!("<Checkpoint at step {step} of {}>", Until(fsot::Until::Work(work)).repr())
+            }
+            None => "<Checkpoint between runs>".into(),
+        }
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {

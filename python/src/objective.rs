@@ -1,10 +1,11 @@
 //! What is optimised, for optimisers of one's own.
 
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use fsot::objective::{ObjectiveError, ValueAndGradient};
-use fsot::{Extent, Objective};
+use fsot::{ConfigError, Extent, Objective};
 use ndarray::ArrayD;
 use numpy::{PyArray2, PyArrayDyn};
 use pyo3::prelude::*;
@@ -16,7 +17,6 @@ use crate::counts::{Count, Number};
 use crate::demand::PyDemand;
 use crate::errors::{OrPython, refused};
 use crate::kernel::rows;
-use crate::own::raised;
 use crate::slices::{Groups, PySlices};
 use crate::term::{PyTerm, role_of};
 use crate::work::{Caller, detached, watched};
@@ -78,7 +78,7 @@ impl PyObjective {
             }
         };
         let (objective, exception) = watched(py, threads, plan, |_| Ok(()))?;
-        if let Some(exception) = exception.or_else(|| raised(&config.0)) {
+        if let Some(exception) = exception {
             return Err(exception);
         }
         let objective = objective.python()?;
@@ -131,7 +131,7 @@ impl PyObjective {
     /// seed, step : int
     ///     Name the random numbers, from 0 to 2**64 - 1.
     /// steps : int
-    ///     How many steps' slices, from `step` on.
+    ///     How many steps' slices, from `step` on; none for 0, of which any points are worth 0.
     /// role : {"descend", "balance"}
     ///     Of which terms.
     ///
@@ -228,6 +228,18 @@ impl PyObjective {
         self.find(py, points, |points, observe| self.objective.cramer_observed(points, observe))
     }
 
+    /// Whether they are of the same configuration and demand.
+    fn __eq__(&self, other: &Self) -> bool {
+        (&self.config, &self.demand) == (&other.config, &other.demand)
+    }
+
+    /// Of what equal ones have in common; functions that are compiled for an objective are kept by it.
+    fn __hash__(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        (self.lengths(), self.config.0.seed, &self.groups.of_terms).hash(&mut hasher);
+        hasher.finish()
+    }
+
     fn __repr__(&self) -> String {
         let [frames, height, width, spp, dims] = self.lengths();
         let terms = self.groups.of_terms.len();
@@ -271,8 +283,13 @@ impl PyObjective {
             })
         };
         let (found, exception) = watched(py, self.threads, work, |_| Ok(()))?;
-        if let Some(exception) = exception.or_else(|| raised(&self.config.0)) {
+        if let Some(exception) = exception {
             return Err(exception);
+        }
+        if let Err(ObjectiveError::Config(ConfigError::NotInClosedForm { term, why })) = found {
+            return Err(refused(format!(
+                "term {term} has no closed form over all slices, since {why}: give slices, as those of draw()"
+            )));
         }
         let ValueAndGradient { value, gradient } = found.python()?;
         let gradient = ArrayD::from_shape_vec(shape, gradient).expect("a slope for each coordinate");

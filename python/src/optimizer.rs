@@ -4,10 +4,11 @@ use std::ops::ControlFlow;
 use std::sync::{Mutex, MutexGuard, TryLockError};
 
 use fsot::files::{Metadata, RunRecord};
-use fsot::optimizer::StepReport;
-use fsot::{Config, ConfigError, Optimizer, RunReport, SampleTable};
-use pyo3::exceptions::PyRuntimeError;
+use fsot::optimizer::{Checkpoint, StepReport};
+use fsot::{Optimizer, RunReport, SampleTable};
+use pyo3::exceptions::{PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
+use pyo3::types::PyBool;
 
 use crate::arrays::{table_of, table_to_numpy};
 use crate::checkpoint::PyCheckpoint;
@@ -16,14 +17,13 @@ use crate::counts::Count;
 use crate::demand::PyDemand;
 use crate::errors::OrPython;
 use crate::json;
-use crate::own::raised;
 use crate::step::{Facts, PyStep, answer};
 use crate::until::Until;
 use crate::work::{Caller, Event, detached, watched};
 
 /// What a run did.
-#[pyclass(frozen, get_all, name = "Report", module = "fsot")]
-#[derive(Clone, Debug)]
+#[pyclass(frozen, eq, get_all, name = "Report", module = "fsot")]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PyReport {
     /// `"finished"`, `"converged"`, or `"stopped"` by a callback, an exception or Ctrl-C.
     ended: String,
@@ -43,12 +43,28 @@ impl PyReport {
         let Self { ended, steps, work, elapsed, .. } = self;
         format!("<{ended} after {steps} steps, {elapsed:.2} s: {}>", work.repr())
     }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, ReportParts)> {
+        let Self { ended, steps, slices, work, elapsed } = self.clone();
+        Ok((py.get_type::<Self>().getattr("_of_parts")?, (ended, steps, slices, work, elapsed)))
+    }
+
+    /// What `__reduce__` has written.
+    #[staticmethod]
+    fn _of_parts(ended: String, steps: u64, slices: u64, work: Until, elapsed: f64) -> Self {
+        Self { ended, steps, slices, work, elapsed }
+    }
 }
+
+type ReportParts = (String, u64, u64, Until, f64);
 
 #[derive(Debug)]
 struct State {
     optimizer: Optimizer,
+    /// Of the run that made the points, if it was one.
     report: Option<RunReport>,
+    /// The run that has ended early, where it did; until something else moves the points.
+    pending: Option<Checkpoint>,
 }
 
 /// A table on its way.
@@ -118,10 +134,10 @@ impl PyOptimizer {
             }
         };
         let (optimizer, exception) = watched(py, threads, plan, |_| Ok(()))?;
-        if let Some(exception) = exception.or_else(|| raised(&config.0)) {
+        if let Some(exception) = exception {
             return Err(exception);
         }
-        Ok(Self { state: Mutex::new(State { optimizer: optimizer.python()?, report: None }), threads })
+        Ok(Self { state: Mutex::new(State::new(optimizer.python()?)), threads })
     }
 
     /// The configuration.
@@ -140,23 +156,29 @@ impl PyOptimizer {
     #[setter]
     fn set_points(&self, points: &Bound<'_, PyAny>) -> PyResult<()> {
         let table = table_of(points)?;
-        self.state()?.optimizer.start_from(table).python()
+        let mut state = self.state()?;
+        state.optimizer.start_from(table).python()?;
+        state.pending = None;
+        Ok(())
     }
 
     /// Takes one step of slices with step size `rate`, then balances with `balance`. Returns the root mean
     /// square distance between the samples and their targets before the step.
     #[pyo3(signature = (rate = 1.0, balance = 1.0))]
     fn step(&self, py: Python<'_>, rate: f64, balance: f64) -> PyResult<f64> {
-        let optimizer = &mut self.state()?.optimizer;
+        let State { optimizer, pending, .. } = &mut *self.state()?;
         let step = detached(py, self.threads, || optimizer.step(rate, balance))?.python()?;
+        *pending = None;
         Ok(step.displacement)
     }
 
     /// Sweeps once over all samples. Returns the root mean square pull on a coordinate.
     #[pyo3(signature = (rate = 1.0, balance = 1.0))]
     fn sweep(&self, py: Python<'_>, rate: f64, balance: f64) -> PyResult<f64> {
-        let optimizer = &mut self.state()?.optimizer;
-        detached(py, self.threads, || optimizer.sweep(rate, balance))?.python()
+        let State { optimizer, pending, .. } = &mut *self.state()?;
+        let pull = detached(py, self.threads, || optimizer.sweep(rate, balance))?.python()?;
+        *pending = None;
+        Ok(pull)
     }
 
     /// Runs; `callback` is called after each step, and `progress` from time to time. Returns the report, and
@@ -169,12 +191,18 @@ impl PyOptimizer {
         callback: Option<Py<PyAny>>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<(PyReport, Option<PyErr>)> {
-        let state = &mut *self.state()?;
-        let optimizer = &mut state.optimizer;
+        let State { optimizer, report: last, pending } = &mut *self.state()?;
+        if until.is_none() && pending.is_none() && !optimizer.is_in_a_run() {
+            return Err(PyRuntimeError::new_err(
+                "there is no run to finish: begin one with run(), or resume() a checkpoint that was \
+                 taken in one",
+            ));
+        }
         let (calls_back, tells) = (callback.is_some(), progress.is_some());
-        let work = |caller: &Caller<'_, Told>| -> Result<RunReport, ConfigError> {
+        let mut kept = None;
+        let work = |caller: &Caller<'_, Told>| -> PyResult<RunReport> {
             let mut told = 0.0;
-            let observe = |report: &StepReport<'_>| -> ControlFlow<()> {
+            let mut look = |report: &StepReport<'_>| -> ControlFlow<()> {
                 let facts = Facts::from(report);
                 if tells && report.elapsed.as_secs_f64() - told >= TELL {
                     told = report.elapsed.as_secs_f64();
@@ -187,10 +215,21 @@ impl PyOptimizer {
                 }
                 if caller.wants_an_end() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             };
-            match until {
-                Some(until) => optimizer.run_observed(until.0, observe),
-                None => optimizer.finish_observed(observe),
+            let observe = |report: &StepReport<'_>| {
+                let flow = look(report);
+                if flow.is_break() {
+                    // Before the run's end tidies up.
+                    kept = Some(report.checkpoint());
+                }
+                flow
+            };
+            if let Some(until) = until {
+                return optimizer.run_observed(until.0, observe).python();
             }
+            if let Some(checkpoint) = pending.clone() {
+                optimizer.resume(checkpoint).python()?;
+            }
+            optimizer.finish_observed(observe).python()
         };
         let look = |event: Event<Told>| match event {
             Event::Message(Told::Step(step)) => call_back(py, &callback, step),
@@ -198,19 +237,43 @@ impl PyOptimizer {
             Event::Nothing => Ok(()),
         };
         let (report, exception) = watched(py, self.threads, work, look)?;
-        let report = report.python()?;
-        state.report = Some(report);
+        let (report, exception) = match (report, exception) {
+            // What a function of the caller's has raised is why the work was refused.
+            (Err(_), Some(exception)) => return Err(exception),
+            (report, exception) => (report?, exception),
+        };
+        (*last, *pending) = (Some(report), kept);
         Ok((PyReport::new(&report), exception))
     }
 
     /// All that further steps depend on; a copy.
+    ///
+    /// After a run that a callback, an exception or Ctrl-C has ended it is of that run where it broke off, so
+    /// that `finish` ends it. After one that has come to its end, and after steps of one's own, it is of no
+    /// run.
     fn checkpoint(&self) -> PyResult<PyCheckpoint> {
-        Ok(PyCheckpoint(self.state()?.optimizer.checkpoint()))
+        let state = self.state()?;
+        Ok(PyCheckpoint(state.pending.clone().unwrap_or_else(|| state.optimizer.checkpoint())))
     }
 
-    /// Goes on from a checkpoint instead of what was reached: `finish` ends its run.
+    /// Goes on from a checkpoint instead of what was reached: `finish` ends its run, if it was taken in one.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     A checkpoint of another configuration or demand. Nothing is changed then.
     fn resume(&self, checkpoint: &PyCheckpoint) -> PyResult<()> {
-        self.state()?.optimizer.resume(checkpoint.0.clone()).python()
+        let mut state = self.state()?;
+        state.optimizer.resume(checkpoint.0.clone()).python()?;
+        (state.report, state.pending) = (None, None);
+        Ok(())
+    }
+
+    fn __reduce__(&self) -> PyResult<()> {
+        Err(PyTypeError::new_err(
+            "an optimiser is neither pickled nor copied: pickle optimizer.checkpoint() instead, and resume \
+             it in another optimiser of its configuration",
+        ))
     }
 
     /// What the last run did, as in metadata.
@@ -227,14 +290,14 @@ impl PyOptimizer {
 }
 
 impl State {
+    fn new(optimizer: Optimizer) -> Self {
+        Self { optimizer, report: None, pending: None }
+    }
+
     fn metadata(&self) -> Metadata {
         match &self.report {
             Some(report) => self.optimizer.metadata(report),
-            None => {
-                let Config { extent, dims, seed, .. } = *self.optimizer.config();
-                let configuration = serde_json::to_value(self.optimizer.config());
-                Metadata::new(extent, dims, seed, configuration.expect("a configuration is plain data"))
-            }
+            None => self.optimizer.metadata_without_run(),
         }
     }
 }
@@ -268,11 +331,24 @@ impl PyReport {
 fn call_back(py: Python<'_>, callback: &Option<Py<PyAny>>, step: PyStep) -> PyResult<()> {
     let Some(callback) = callback else { return Ok(()) };
     let step = Bound::new(py, step)?;
-    let answer = callback.call1(py, (&step,));
-    let ends = matches!(&answer, Ok(answer) if matches!(answer.extract::<bool>(py), Ok(false)));
-    let flow = if ends || answer.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+    let goes_on = callback.bind(py).call1((&step,)).and_then(|answer| goes_on(&answer));
+    let flow = if let Ok(true) = goes_on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
     step.get().release(flow);
-    answer.map(drop)
+    goes_on.map(drop)
+}
+
+/// Whether an answer is anything but `False`, be it Python's, or numpy's or another library's, also in an
+/// array without axes.
+///
+/// # Errors
+/// Those of its `__bool__`, as of arrays of several.
+fn goes_on(answer: &Bound<'_, PyAny>) -> PyResult<bool> {
+    if answer.is_instance_of::<PyBool>() {
+        return answer.is_truthy();
+    }
+    let Some(dtype) = answer.getattr_opt("dtype")? else { return Ok(true) };
+    let is_bool = matches!(dtype.str()?.to_str()?, "bool" | "torch.bool");
+    if is_bool { answer.is_truthy() } else { Ok(true) }
 }
 
 fn tell(py: Python<'_>, progress: &Option<Py<PyAny>>, facts: Facts) -> PyResult<()> {

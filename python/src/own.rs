@@ -5,15 +5,16 @@ use std::collections::HashMap;
 use std::fmt;
 use std::sync::{Mutex, PoisonError};
 
+use fsot::Extent;
 use fsot::classes::{ClassFamily, ClassSamples, Classes};
 use fsot::targets::{Measure, Projected, Target};
-use fsot::{Config, Extent};
 use numpy::PyArray1;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::arrays::{Numbers, to_numpy};
 use crate::errors::refused;
+use crate::pool::raise;
 
 /// Classes as lists, one after the other.
 #[derive(Debug, PartialEq)]
@@ -80,8 +81,6 @@ pub struct OwnTarget {
     pub law: Law,
     /// Laws that a function has given, by the bits of their directions: it is asked once for each.
     known: Mutex<HashMap<Vec<u64>, Projected>>,
-    /// What a function has raised, for whoever asked the library.
-    raised: Mutex<Option<PyErr>>,
 }
 
 /// Where quantiles come from.
@@ -109,7 +108,7 @@ impl OwnTarget {
             Law::Table(values) => labelled(&given, values.iter().map(|value| value.to_bits())),
             Law::Function(_) => given.clone(),
         };
-        Self { given, name, dims, law, known: Mutex::default(), raised: Mutex::default() }
+        Self { given, name, dims, law, known: Mutex::default() }
     }
 
     /// The quantiles of this target, if it is such.
@@ -174,7 +173,7 @@ impl Measure for OwnTarget {
                 law
             }
             Err(error) => {
-                self.raised.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+                raise(error);
                 // What is no law is refused by the library.
                 Projected::from_samples(Vec::new())
             }
@@ -220,15 +219,6 @@ pub fn quantiles_of(object: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
         return Err(refused(format!("quantiles fall from {below} to {above} after number {at}: {advice}")));
     }
     Ok(values)
-}
-
-/// What functions of the caller's own have raised since somebody looked, if they have.
-pub fn raised(config: &Config) -> Option<PyErr> {
-    let of =
-        |target: &Target| OwnTarget::of(target)?.raised.lock().unwrap_or_else(PoisonError::into_inner).take();
-    // Each takes what it has raised, and the first is told.
-    let all: Vec<PyErr> = config.terms.iter().filter_map(|term| of(&term.target)).collect();
-    all.into_iter().next()
 }
 
 /// Whole numbers of an array or list, of any shape.

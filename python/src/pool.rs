@@ -1,13 +1,14 @@
 //! The threads that work is done on.
 
+use std::cell::RefCell;
 use std::collections::HashMap;
 use std::mem;
 use std::ops::Deref;
 use std::process;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
-use pyo3::PyResult;
 use pyo3::exceptions::{PyRecursionError, PyRuntimeError};
+use pyo3::{PyErr, PyResult};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::errors::refused;
@@ -24,9 +25,34 @@ struct Pools {
     /// Which made them.
     process: u32,
     /// Those that nobody uses, by number of threads, 0 standing for one thread a core.
-    idle: HashMap<usize, Vec<ThreadPool>>,
+    idle: HashMap<usize, Vec<Threads>>,
     /// How many are in use.
     used: usize,
+}
+
+/// Threads, and what a function of the caller's has raised on one of them.
+#[derive(Debug)]
+struct Threads {
+    pool: ThreadPool,
+    raised: Raised,
+}
+
+type Raised = Arc<Mutex<Option<PyErr>>>;
+
+thread_local! {
+    /// Of the pool that this thread is of.
+    static RAISED: RefCell<Option<Raised>> = const { RefCell::new(None) };
+}
+
+/// Keeps what a function has raised for the caller whose work this thread does, if it is the first.
+///
+/// Callers have pools of their own: what one's work has raised no other hears, though both use one function.
+pub fn raise(error: PyErr) {
+    RAISED.with_borrow(|raised| {
+        if let Some(raised) = raised {
+            raised.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+        }
+    });
 }
 
 static POOLS: Mutex<Option<Pools>> = Mutex::new(None);
@@ -34,10 +60,10 @@ static POOLS: Mutex<Option<Pools>> = Mutex::new(None);
 /// A pool that is one caller's own until this is dropped.
 #[derive(Debug)]
 pub struct Pool {
-    threads: usize,
+    wanted: usize,
     process: u32,
     /// There until this is dropped.
-    pool: Option<ThreadPool>,
+    pool: Option<Threads>,
 }
 
 impl Pool {
@@ -66,17 +92,36 @@ impl Pool {
             Ok(pools.idle.get_mut(&threads).and_then(Vec::pop))
         })?;
         // Counted from here on, so that what is refused is counted back.
-        let mut own = Self { threads, process, pool: idle };
+        let mut own = Self { wanted: threads, process, pool: idle };
         if own.pool.is_none() {
             let name = |at| format!("fsot-{at}");
-            let pool = ThreadPoolBuilder::new().num_threads(threads).thread_name(name).build();
-            own.pool = Some(pool.map_err(|error| {
+            let raised = Raised::default();
+            let of_threads = Arc::clone(&raised);
+            let builder = ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .thread_name(name)
+                .start_handler(move |_| RAISED.set(Some(Arc::clone(&of_threads))));
+            let pool = builder.build().map_err(|error| {
                 PyRuntimeError::new_err(format!(
                     "the system gives no threads: {error}; ask for fewer with threads="
                 ))
-            })?);
+            })?;
+            own.pool = Some(Threads { pool, raised });
         }
+        // Work that has panicked may have left one behind.
+        own.raised();
         Ok(own)
+    }
+}
+
+impl Pool {
+    /// What a function has raised on these threads since somebody asked.
+    pub fn raised(&self) -> Option<PyErr> {
+        self.threads().raised.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+
+    fn threads(&self) -> &Threads {
+        self.pool.as_ref().expect("they are there until this is dropped")
     }
 }
 
@@ -84,7 +129,7 @@ impl Deref for Pool {
     type Target = ThreadPool;
 
     fn deref(&self) -> &ThreadPool {
-        self.pool.as_ref().expect("it is there until it is dropped")
+        &self.threads().pool
     }
 }
 
@@ -96,7 +141,7 @@ impl Drop for Pool {
         }
         with_pools(self.process, |pools| {
             pools.used -= 1;
-            pools.idle.entry(self.threads).or_default().extend(pool);
+            pools.idle.entry(self.wanted).or_default().extend(pool);
         });
     }
 }

@@ -145,6 +145,11 @@ impl PySlices {
     #[staticmethod]
     fn _of_arrays(dims: usize, of_terms: Vec<Vec<usize>>, arrays: &Bound<'_, PyAny>) -> PyResult<Self> {
         let at = |index: usize| arrays.get_item(index);
+        if let Some(dim) = of_terms.iter().flatten().find(|&&dim| dim >= dims) {
+            return Err(refused(format!(
+                "a term sees dimension {dim}, but there are {dims}: the pickle is damaged; write it again"
+            )));
+        }
         let groups = Arc::new(Groups { dims, of_terms });
         Self::of(groups, &at(0)?, &at(1)?, &at(2)?, &at(3)?, Some(&at(4)?))
     }

@@ -1,6 +1,7 @@
 //! What a run tells its caller after a step.
 
 use std::ops::ControlFlow;
+use std::process;
 use std::sync::Mutex;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
@@ -41,12 +42,14 @@ pub enum Ask {
 
 /// A step of a run, as a callback sees it.
 ///
-/// Figures may be kept. Points, loss and checkpoint are computed when they are asked for, which is possible
-/// until the callback returns.
+/// Figures may be kept, copied and pickled. Points, loss and checkpoint are computed when they are asked for,
+/// which is possible until the callback returns.
 #[pyclass(frozen, name = "Step", module = "fsot")]
 #[derive(Debug)]
 pub struct PyStep {
     facts: Facts,
+    /// Whose thread answers.
+    process: u32,
     asks: Mutex<Option<Sender<Ask>>>,
 }
 
@@ -107,14 +110,35 @@ impl PyStep {
         self.ask(py, Ask::Checkpoint).map(PyCheckpoint)
     }
 
+    /// The figures: nothing can be asked of a copy.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, StepParts)> {
+        let Facts { step, steps, slices, displacement, rate, elapsed } = self.facts;
+        let parts = (step, steps, slices, displacement, rate, elapsed);
+        Ok((py.get_type::<Self>().getattr("_of_figures")?, parts))
+    }
+
+    /// What `__reduce__` has written.
+    #[staticmethod]
+    fn _of_figures(step: u64, steps: u64, slices: u64, displacement: f64, rate: f64, elapsed: f64) -> Self {
+        let facts = Facts { step, steps, slices, displacement, rate, elapsed };
+        Self { facts, process: process::id(), asks: Mutex::new(None) }
+    }
+
     fn __repr__(&self) -> String {
         let Facts { step, steps, displacement, elapsed, .. } = self.facts;
         format!("<step {step} of {steps}, displacement {displacement:.3e}, {elapsed:.2} s>")
     }
 }
 
+type StepParts = (u64, u64, u64, f64, f64, f64);
+
 impl PyStep {
     fn ask<T: Send>(&self, py: Python<'_>, what: impl FnOnce(Sender<T>) -> Ask) -> PyResult<T> {
+        if self.process != process::id() {
+            return Err(PyRuntimeError::new_err(
+                "the run is another process's: ask there what a forked one needs, before it is forked",
+            ));
+        }
         let over = || PyRuntimeError::new_err("the run has gone on: ask a step while the callback sees it");
         let asks = self.asks.lock().map_err(|_| over())?.clone().ok_or_else(over)?;
         let (reply, replied) = channel();
@@ -126,7 +150,7 @@ impl PyStep {
     /// A step, with the questions that will be asked about it.
     pub fn new(facts: Facts) -> (Self, Receiver<Ask>) {
         let (asks, asked) = channel();
-        (Self { facts, asks: Mutex::new(Some(asks)) }, asked)
+        (Self { facts, process: process::id(), asks: Mutex::new(Some(asks)) }, asked)
     }
 
     /// Lets the run go on; nothing can be asked any more.

@@ -21,14 +21,15 @@ const NOTICE: Duration = Duration::from_millis(50);
 /// heard afterwards.
 ///
 /// # Errors
-/// A number of threads out of range.
+/// A number of threads out of range; what a function of the caller's has raised during the work.
 pub fn detached<T: Ungil + Send>(
     py: Python<'_>,
     threads: Option<usize>,
     work: impl FnOnce() -> T + Ungil + Send,
 ) -> PyResult<T> {
     let pool = Pool::of(threads)?;
-    Ok(py.detach(|| pool.install(work)))
+    let result = py.detach(|| pool.install(work));
+    pool.raised().map_or(Ok(result), Err)
 }
 
 /// The same for work that Ctrl-C leaves alone: it cannot be stopped, and goes on until it has ended or the
@@ -94,7 +95,8 @@ impl<Message> Caller<'_, Message> {
 
 /// Runs `work` on a pool, without the interpreter's lock, while this thread looks after signals and calls
 /// `look` with every message of the work, and from time to time with none. The first exception, of a signal
-/// handler or of `look`, asks the work to end, and is given back beside its result.
+/// handler or of `look`, asks the work to end, and is given back beside its result; so is what a function of
+/// the caller's has raised during the work.
 ///
 /// # Errors
 /// A number of threads out of range.
@@ -109,7 +111,8 @@ pub fn watched<T: Send, Message: Send>(
     let (messages, heard) = channel();
     let caller = Caller { messages, stop: &stop };
     thread::scope(|scope| {
-        let worker = scope.spawn(move || pool.install(|| work(&caller)));
+        let on_pool = &pool;
+        let worker = scope.spawn(move || on_pool.install(|| work(&caller)));
         let mut exception = None;
         let mut heard = Some(Mutex::new(heard));
         while let Some(messages) = &heard {
@@ -126,7 +129,9 @@ pub fn watched<T: Send, Message: Send>(
             }
         }
         let result = py.detach(|| worker.join()).unwrap_or_else(|panic| resume_unwind(panic));
-        Ok((result, exception))
+        // Asked in any case: the next caller's threads start with none.
+        let raised = pool.raised();
+        Ok((result, exception.or(raised)))
     })
 }
 

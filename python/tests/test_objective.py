@@ -170,7 +170,7 @@ class TestGradients:
     @pytest.mark.parametrize("name", ["torus", "labels", "density"])
     def test_where_there_is_no_closed_form_it_says_so(self, name):
         objective = fsot.Objective(CASES[name])
-        with pytest.raises(ValueError, match="cannot be swept, since .*: use slices"):
+        with pytest.raises(ValueError, match="has no closed form over all slices, since .*: give slices"):
             objective.cramer(numpy.full(objective.shape, 0.5))
 
 
@@ -367,3 +367,19 @@ class TestInterrupts:
         config = fsot.Config.points(8, 2, [fsot.Term(fsot.Classes.whole_table(), target, dims=[0, 1])])
         with interrupted():
             fsot.Objective(config, threads=1)
+
+
+def test_objectives_are_the_same_by_what_they_optimise():
+    config = fsot.Config(4, 4)
+    one, same = fsot.Objective(config), fsot.Objective(fsot.Config(4, 4), threads=1)
+    assert one == same == pickle.loads(pickle.dumps(one)) and hash(one) == hash(same)
+    half = fsot.Demand(numpy.arange(4) < numpy.full((4, 1), 2))
+    others = [fsot.Objective(config, half), fsot.Objective(config.with_seed(1)), fsot.Objective(fsot.Config(4, 5))]
+    assert all(one != other for other in others) and one != config
+    assert {one: 1}[same] == 1 and fsot.Objective(config, half) == others[0]
+
+
+def test_what_has_no_closed_form_says_so():
+    objective = fsot.Objective(fsot.Config(4, 4).with_domain("torus"))
+    with pytest.raises(ValueError, match="term 0 has no closed form .* that is a torus: give slices, as those of draw"):
+        objective.cramer(numpy.full(objective.shape, 0.5))

@@ -123,3 +123,10 @@ class TestSlices:
     def test_other_questions_are_refused(self, ask, error):
         with pytest.raises(error):
             ask(self.objective)
+
+
+@pytest.mark.parametrize("of_terms", [[[0, 9]], [[0, 1], [2]], [[2**40]]])
+def test_a_damaged_pickle_is_refused(of_terms):
+    # Terms that see dimensions that are not there.
+    with pytest.raises(ValueError, match="there are 2: the pickle is damaged"):
+        fsot.Slices._of_arrays(2, of_terms, ([0], [0], [0.0], [[1, 0]], [[0, 0]]))

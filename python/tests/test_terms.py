@@ -225,6 +225,61 @@ class TestTargets:
         broken[0] = False
         assert fsot.Objective(config).terms == config.terms
 
+    def test_what_a_function_raises_is_raised_by_metrics(self):
+        broken = [True]
+
+        def quantiles(theta):
+            if broken[0]:
+                raise KeyError("now")
+            return beta_quantiles(theta)
+
+        points = numpy.random.default_rng(0).random((8, 2))
+
+        def bound(target):
+            return fsot.metrics.bound(points, fsot.Config.points(8, 2, [one(WHOLE, target)]))
+
+        def distance(target):
+            return fsot.metrics.sliced_distance(points, target=target)
+
+        for measure in (bound, distance):
+            target = fsot.Target.quantiles(quantiles, dims=2)
+            broken[0] = True
+            with pytest.raises(KeyError, match="now"):
+                measure(target)
+            # Later calls, which share the function, hear nothing of it.
+            broken[0] = False
+            assert fsot.Objective(fsot.Config.points(8, 2, [one(WHOLE, target)])).shape == (1, 1, 8, 1, 2)
+            measure(target)
+
+    def test_threads_hear_what_their_own_call_has_raised(self):
+        def quantiles(theta):
+            if abs(theta[0] - 0.28) < 1e-9:
+                raise LookupError("there")
+            return beta_quantiles(theta)
+
+        target = fsot.Target.quantiles(quantiles, dims=2)
+        objective = fsot.Objective(fsot.Config.points(8, 2, [one(WHOLE, target)]), threads=2)
+        good = objective.draw()
+        bad = fsot.Slices(objective, 0, 0, 0.0, [[0.28, 0.96]])
+        points = numpy.full((8, 2), 0.5)
+        objective.value_and_gradient(points, good)
+        heard = {"good": [], "bad": []}
+
+        def ask(name, slices):
+            for _ in range(100):
+                try:
+                    objective.value_and_gradient(points, slices)
+                    heard[name].append(None)
+                except Exception as error:
+                    heard[name].append(type(error))
+
+        threads = [threading.Thread(target=ask, args=pair) for pair in 3 * [("good", good), ("bad", bad)]]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join(60)
+        assert heard == {"good": 300 * [None], "bad": 300 * [LookupError]}
+
     def test_an_own_slice_along_which_a_function_raises(self):
         def quantiles(theta):
             if abs(theta[0] - 0.28) < 1e-9:

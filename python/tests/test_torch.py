@@ -127,7 +127,7 @@ class TestArguments:
             ({"slices": SLICES, "seed": 0}, ValueError, "leave out seed and step"),
             ({"seed": -1}, ValueError, "give a whole number from 0"),
             ({"step": 0.5}, TypeError, "whole number|integer"),
-            ({"objective": TORUS, "slices": "all"}, ValueError, "use slices"),
+            ({"objective": TORUS, "slices": "all"}, ValueError, "give slices"),
         ],
     )
     def test_others_are_refused(self, arguments, error, sentence):
@@ -185,3 +185,28 @@ def test_several_threads_differentiate_at_once():
     for thread in threads:
         thread.join(60)
     assert all(torch.equal(*pair) for pair in zip(alone, together, strict=True))
+
+
+class TestLimits:
+    @pytest.mark.parametrize("in_dim", [0, 1])
+    def test_a_batch_of_none_has_no_losses(self, in_dim):
+        none = torch.zeros((0, 16, 2) if in_dim == 0 else (16, 0, 2))
+
+        def loss(points):
+            return filtered_sliced_loss(points, OBJECTIVE, SLICES)
+
+        assert torch.func.vmap(loss, in_dims=in_dim)(none).shape == (0,)
+        slopes = torch.func.vmap(torch.func.grad(loss), in_dims=in_dim)(none)
+        assert slopes.shape == (0, 16, 2) and slopes.dtype == torch.float32
+
+    @pytest.mark.parametrize("of", [torch.func.jacfwd, torch.func.hessian])
+    def test_forward_mode_is_refused_in_words(self, of):
+        with pytest.raises(RuntimeError, match="backwards alone, not in forward mode: use"):
+            of(lambda points: filtered_sliced_loss(points, OBJECTIVE, SLICES))(noise(16, 2))
+
+    def test_forward_mode_of_the_gradient_is_refused_in_words(self):
+        def gradient(points):
+            return torch.func.grad(lambda points: filtered_sliced_loss(points, OBJECTIVE, SLICES))(points)
+
+        with pytest.raises(RuntimeError, match="differentiated once"):
+            torch.func.jvp(gradient, (noise(16, 2),), (noise(16, 2),))

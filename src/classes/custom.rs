@@ -9,7 +9,7 @@ use crate::table::extent::Extent;
 ///
 /// It is asked once for each of its members, when an objective is planned, and never during the optimisation:
 /// a filter may be anything that can be written down as a list of samples and weights. The lists are kept,
-/// eight bytes per entry. [`CustomClasses::get`] gives it back as `&dyn Any`, so that who made it finds it
+/// eight bytes per entry. `CustomClasses::get` gives it back as `&dyn Any`, so that who made it finds it
 /// again.
 ///
 /// ```

@@ -20,6 +20,39 @@ impl Optimizer {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn metadata(&self, report: &RunReport) -> Metadata {
+        self.metadata_of(self.start(), report.into())
+    }
+
+    /// The metadata of the table as it is now, where no report says how it came about: after steps and sweeps
+    /// of one's own, from another table, or in the middle of a run that was
+    /// [resumed](Optimizer::resume). No configuration makes such a table again, and its run record says so.
+    ///
+    /// ```
+    /// use fsot::files::RunStart;
+    /// use fsot::{Config, Extent, Optimizer, Until};
+    ///
+    /// let config = Config::new(Extent::still(16, 16), 2);
+    /// let mut optimizer = Optimizer::new(config.clone())?;
+    /// assert_eq!(optimizer.metadata_without_run().run.beginning(), RunStart::WhiteNoise);
+    /// optimizer.step(1.0, 1.0)?;
+    /// assert_eq!(optimizer.metadata_without_run().run.beginning(), RunStart::Elsewhere);
+    ///
+    /// let mut first = Optimizer::new(config)?;
+    /// first.run(Until::Sweeps(2))?;
+    /// optimizer.resume(first.checkpoint())?;
+    /// assert_eq!(optimizer.metadata_without_run().run.beginning(), RunStart::Elsewhere);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn metadata_without_run(&self) -> Metadata {
+        let start = match self.start() {
+            // A run of which the record would say nothing.
+            RunStart::WhiteNoise if self.past == Past::Run => RunStart::Elsewhere,
+            start => start,
+        };
+        self.metadata_of(start, RunRecord::default())
+    }
+
+    fn metadata_of(&self, start: RunStart, run: RunRecord) -> Metadata {
         let configuration = serde_json::to_value(&self.config).expect("a configuration is plain data");
         let taps = |term| {
             let taps = self.objective.taps(term).filter(|taps| taps.len() <= MOST_TAPS)?;
@@ -30,8 +63,8 @@ impl Optimizer {
             run: RunRecord {
                 next_step: Some(self.steps),
                 next_sweep: Some(self.swept),
-                start: Some(self.start()),
-                ..report.into()
+                start: Some(start),
+                ..run
             },
             ..Metadata::new(self.config.extent, self.config.dims, self.config.seed, configuration)
         }

@@ -121,6 +121,12 @@ impl Optimizer {
         Ok(())
     }
 
+    /// Whether there is a run to go on with: one that was [resumed](Self::resume) and that nothing has
+    /// replaced or ended since. [`finish`](Optimizer::finish) ends it.
+    pub fn is_in_a_run(&self) -> bool {
+        self.resumed.is_some()
+    }
+
     pub(super) fn place(&self) -> Place<'_> {
         let walker = self.slices.walker();
         let Self { steps, swept, fresh, past, .. } = *self;

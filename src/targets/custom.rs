@@ -8,7 +8,7 @@ use crate::named::{ByName, Named};
 /// A target measure of the caller's own, on the unit cube.
 ///
 /// It is asked for the laws of a fixed set of directions when an objective is planned, and never during the
-/// optimisation. [`CustomTarget::get`] gives it back as `&dyn Any`, so that who made it finds it again.
+/// optimisation. `CustomTarget::get` gives it back as `&dyn Any`, so that who made it finds it again.
 ///
 /// ```
 /// use fsot::targets::{Measure, Projected, Target};
