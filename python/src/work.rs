@@ -36,7 +36,8 @@ pub fn detached<T: Ungil + Send>(
 /// process does, on a thread and a pool of its own. It must not write what would surprise its caller then.
 ///
 /// # Errors
-/// A number of threads out of range; what a signal's handler raises, `KeyboardInterrupt` for Ctrl-C.
+/// A number of threads out of range; what a signal's handler raises, `KeyboardInterrupt` for Ctrl-C; what a
+/// function of the caller's has raised during the work.
 pub fn left_alone<T: Send + 'static>(
     py: Python<'_>,
     threads: Option<usize>,
@@ -46,15 +47,16 @@ pub fn left_alone<T: Send + 'static>(
     let (tell, told) = channel();
     let work = move || {
         let result = pool.install(work);
+        let raised = pool.raised();
         drop(pool);
         // Nobody listens any more after a signal.
-        let _ = tell.send(result);
+        let _ = tell.send(raised.map_or(Ok(result), Err));
     };
     let worker = thread::Builder::new().name("fsot".into()).spawn(work).map_err(no_thread)?;
     let told = Mutex::new(told);
     loop {
         match next(py, &told) {
-            Ok(result) => return Ok(result),
+            Ok(result) => return result,
             Err(RecvTimeoutError::Timeout) => py.check_signals()?,
             Err(RecvTimeoutError::Disconnected) => break,
         }
