@@ -4,6 +4,7 @@ use fsot::kernel::{SpatialKernel, Tap, TemporalKernel};
 use fsot::{Extent, Kernel};
 use ndarray::{Array2, ArrayView2, ArrayView3};
 use numpy::PyArray2;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 use crate::arrays::{Numbers, to_numpy};
@@ -45,7 +46,7 @@ use crate::work::left_alone;
 /// >>> cross.taps()[:2]  # dt, dy, dx, weight
 /// array([[ 0. ,  0. ,  0. ,  1. ],
 ///        [ 0. , -1. ,  0. ,  0.5]])
-#[pyclass(frozen, eq, name = "Kernel", module = "fsot", from_py_object)]
+#[pyclass(frozen, eq, name = "Kernel", module = "fsot")]
 #[derive(Clone, Debug, PartialEq)]
 pub struct PyKernel(pub Kernel);
 
@@ -188,6 +189,21 @@ impl PyKernel {
         // Whatever folds, folds onto a pixel.
         kernel.taps(&Extent::still(1, 1)).python()?;
         Ok(Self(kernel))
+    }
+}
+
+impl<'a, 'py> FromPyObject<'a, 'py> for PyKernel {
+    type Error = PyErr;
+
+    /// No array of weights: where there are frames, `fsot.table` and a `Kernel` make different things of one.
+    fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        match object.cast::<Self>() {
+            Ok(kernel) => Ok(kernel.get().clone()),
+            Err(_) => Err(PyTypeError::new_err(format!(
+                "a {} is no Kernel: give one, as by fsot.Kernel(weights)",
+                object.get_type().name()?
+            ))),
+        }
     }
 }
 

@@ -201,3 +201,17 @@ def test_a_kernel_larger_than_the_tile_is_refused_as_by_the_command(over_time, c
     for kernel in (weights, fsot.Kernel(weights)):
         with pytest.raises(ValueError, match=words):
             fsot.table(8, 7, kernel=kernel, sweeps=1, progress=False)
+
+
+@pytest.mark.parametrize(
+    "give",
+    [
+        lambda: fsot.Config(8, 8).with_kernel([[1.0, 2.0]]),
+        lambda: fsot.Config(8, 8).with_kernels([numpy.ones((3, 3))]),
+        lambda: fsot.Classes.lattice(None),
+        lambda: fsot.metrics.filtered_error(numpy.full((1, 4, 4, 1, 2), 0.5), kernel=2.1),
+    ],
+)
+def test_what_is_no_kernel_is_told_how_to_make_one(give):
+    with pytest.raises(TypeError, match=r"is no Kernel: give one, as by fsot.Kernel\(weights\)"):
+        give()
