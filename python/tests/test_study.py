@@ -335,3 +335,24 @@ def test_values_of_no_table_are_refused_by_their_key(line, words, toml, capsys):
     assert run(toml) == 1
     said = capsys.readouterr().err
     assert said.startswith("study: ") and words in said and said.count("\n") == 1
+
+
+def test_a_task_takes_one_thread(toml, monkeypatch):
+    # More would change no bit, and crowd the other workers of its machine.
+    asked = []
+
+    def spy(holder, name):
+        made = getattr(holder, name)
+
+        def call(*arguments, threads=None, **more):
+            asked.append((name, threads))
+            return made(*arguments, threads=threads, **more)
+
+        monkeypatch.setattr(holder, name, call)
+
+    spy(fsot, "Optimizer")
+    for name in ("filtered_error", "bias", "bound"):
+        spy(fsot.metrics, name)
+    assert run(toml) == 0
+    assert {name for name, _ in asked} == {"Optimizer", "filtered_error", "bias", "bound"}
+    assert {threads for _, threads in asked} == {1}
